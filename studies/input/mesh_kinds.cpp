@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/mesh/split.hpp"
 #include "studies/input/described.hpp"
 #include "studies/io/atomic_file.hpp"
 
@@ -74,6 +75,16 @@ const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneRe
   return &found->second;
 }
 
+/// The mesh, split as often as `node` says: into ten million elements at most.
+std::optional<MeshDescription> split_often(ImportedMesh mesh, const JsonNode& node) {
+  int most = 0;
+  for (double elements = 4.0 * mesh.mesh.element_count(); elements <= 1e7; elements *= 4) ++most;
+  const auto times = node.count(0, most);
+  if (!times) return std::nullopt;
+  for (int k = 0; k < *times; ++k) mesh = split(mesh);
+  return mesh;
+}
+
 std::optional<MeshDescription> read_gmsh(const JsonNode& mesh, const JsonNode& node, SceneReading& reading) {
   const auto name = node.text();
   const auto body = mesh.find("body");
@@ -81,8 +92,9 @@ std::optional<MeshDescription> read_gmsh(const JsonNode& mesh, const JsonNode& n
   const auto body_name = body ? body->text() : std::nullopt;
   const MeshFile* file = name ? mesh_file(node, *name, reading) : nullptr;
   if (!file || !body_name) return std::nullopt;
+  const auto splits = mesh.find("split");
   for (const ImportedMesh& each : file->content.bodies)
-    if (each.body == *body_name) return each;
+    if (each.body == *body_name) return splits ? split_often(each, *splits) : each;
   // a file that is at fault may lack the body for that reason
   if (file->content.errors.empty()) body->error(body_error(file->content, *body_name));
   return std::nullopt;
@@ -95,11 +107,12 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
   keys.reserve(mesh_kinds.size() + 1);
   for (const auto& kind : mesh_kinds) keys.emplace_back(kind.key);
   keys.emplace_back("gmsh");
-  const auto named = node.kind(keys, {"sphere"}, {"body"});
+  const auto named = node.kind(keys, {"sphere"}, {"body", "split"});
   if (!named) return std::nullopt;
   const auto& [name, mesh] = *named;
   if (name != "gmsh")
-    if (const auto body = node.find("body")) body->error_at_key("belongs to gmsh, not to " + name);
+    for (const char* key : {"body", "split"})
+      if (const auto found = node.find(key)) found->error_at_key("belongs to gmsh, not to " + name);
   const auto generator = std::find_if(mesh_kinds.begin(), mesh_kinds.end(),
                                       [&name = name](const MeshKind& kind) { return name == kind.key; });
   const bool from_file = generator == mesh_kinds.end();
@@ -127,6 +140,14 @@ Schema mesh_schema() {
   properties["body"] = {{"description", "beside gmsh: the physical name of a surface in the file"},
                         {"type", "string"},
                         {"examples", {"upper"}}};
+  properties["split"] = {{"description",
+                          "beside gmsh: how often every element is split into four; corners stay, sides keep the shape "
+                          "that their elements give them"},
+                         {"title", "a whole number >= 0"},
+                         {"type", "integer"},
+                         {"minimum", 0},
+                         {"default", 0},
+                         {"examples", {1}}};
   one.push_back({{"required", {"gmsh", "body"}}});
   return {{"type", "object"},
           {"title", "one of the following"},

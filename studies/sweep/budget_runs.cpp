@@ -28,11 +28,10 @@ void tighten(Method& method) {
   std::visit([](auto& chosen) { chosen.tighten(tightest, most_augmentations); }, method);
 }
 
-/// The cell with the exact enforcement, on a finer mesh and in finer steps. Faults are in the diagnostics.
-std::optional<CellInput> exact_cell(const CellInput& cell, int mesh_halvings, int step_halvings, MeshFiles& meshes,
-                                    Diagnostics& diagnostics) {
+/// The cell with the exact enforcement, on a finer mesh and in finer steps.
+CellInput exact_cell(const CellInput& cell, int mesh_halvings, int step_halvings, MeshFiles& meshes) {
   CellInput fine = cell;
-  if (!refine_meshes(fine.document, mesh_halvings, {fine.document.file()}, diagnostics)) return std::nullopt;
+  refine_meshes(fine.document, mesh_halvings, {fine.document.file()});
   if (step_halvings > 0) refine_steps(fine.document, step_halvings, {fine.document.file()});
   const Reference exact{Reference::Kind::method, {}, {std::string(MonolithicAL::name), {fine.document.file()}, {}}, 0};
   return reference_cell(fine, exact, program_version(), meshes);
@@ -144,14 +143,12 @@ BudgetRunner::Run BudgetRunner::exact_run(const CellInput& cell, int mesh_halvin
   std::string name = "exact enforcement";
   if (mesh_halvings > 0) name += std::string(", mesh") + times[mesh_halvings];
   if (step_halvings > 0) name += std::string(", steps") + times[step_halvings];
-  Diagnostics diagnostics;
-  const auto fine = exact_cell(cell, mesh_halvings, step_halvings, meshes_, diagnostics);
-  if (!fine) return {name, "refused", diagnostics.errors().front().message, false, false, {}};
-  if (mesh_halvings > 0 && fine->canonical == exact_cell(cell, 0, 0, meshes_, diagnostics)->canonical)
+  const auto fine = exact_cell(cell, mesh_halvings, step_halvings, meshes_);
+  if (mesh_halvings > 0 && fine.canonical == exact_cell(cell, 0, 0, meshes_).canonical)
     return {name, "", "", false, true, {}};
   return run(name, [&] {
     Diagnostics faults;
-    auto read = read_scene(fine->document, std::string(MonolithicAL::name), faults, meshes_);
+    auto read = read_scene(fine.document, std::string(MonolithicAL::name), faults, meshes_);
     if (!read) throw ModelError(faults.text());  // finer than a scene may be
     Input& input = *read;
     tighten(input.method);
@@ -182,8 +179,7 @@ void BudgetRunner::enter(const CellInput& cell) {
     shared_.steps[halvings - 1] = exact_run(cell, 0, halvings);
     shared_.mesh[halvings - 1] = exact_run(cell, halvings, 0);
   }
-  Diagnostics none;
-  Input input = input_of(*exact_cell(cell, 0, 0, meshes_, none), meshes_);
+  Input input = input_of(exact_cell(cell, 0, 0, meshes_), meshes_);
   tighten(input.method);
   for (int number = 1; number <= study_.budget_copies; ++number) {
     Copy& copy = shared_.copies.emplace_back();

@@ -56,12 +56,12 @@ void set_method(CellInput& cell, const MethodSweep& method, const std::vector<co
   }
 }
 
-/// Puts the method of a reference into the cell, and its mesh level; false where an imported mesh has no finer one.
-bool set_reference(CellInput& cell, const Reference& reference, Diagnostics& diagnostics) {
+/// Puts the method of a reference into the cell, and its mesh level.
+void set_reference(CellInput& cell, const Reference& reference) {
   std::vector<const PlacedValue*> chosen;
   for (const Knob& option : reference.method.options) chosen.push_back(&option.values.front());
   set_method(cell, reference.method, chosen);
-  return refine_meshes(cell.document, reference.refine, reference.method.place, diagnostics);
+  refine_meshes(cell.document, reference.refine, reference.method.place);
 }
 
 /// Reads the cell's document and fills in what follows from it; false where it is at fault.
@@ -138,7 +138,7 @@ std::string cell_id(const std::string& canonical, const std::string& program_ver
   return fingerprint(canonical + "\n" + program_version);
 }
 
-bool refine_meshes(JsonDocument& scene, int level, const Place& origin, Diagnostics& diagnostics) {
+void refine_meshes(JsonDocument& scene, int level, const Place& origin) {
   auto finer = [&](json& count) {
     if (!count.is_number()) return;
     const double cells = count.get<double>() * (1 << level);
@@ -149,16 +149,14 @@ bool refine_meshes(JsonDocument& scene, int level, const Place& origin, Diagnost
       count = cells;
   };
   JsonDocument result = scene;
-  bool possible = true;
   const json bodies = level > 0 ? scene.root().value("bodies", json::object()) : json::object();
   for (const auto& [name, body] : bodies.items()) {
     const json* mesh = value_at(body, "/mesh");
     if (!mesh || !mesh->is_object()) continue;
     const std::string pointer = child_pointer("/bodies", name) + "/mesh";
     if (mesh->contains("gmsh")) {
-      diagnostics.error(
-          {origin, pointer, "refines " + pointer + ", an imported mesh, which cannot be; allowed: level 0"});
-      possible = false;
+      const json splits = mesh->value("split", json(0));
+      if (splits.is_number_integer()) result.set(pointer + "/split", splits.get<long long>() + level, origin);
     }
     for (const auto& [kind, generator] : mesh->items()) {
       if (!generator.is_object() || !generator.contains("cells")) continue;
@@ -170,8 +168,7 @@ bool refine_meshes(JsonDocument& scene, int level, const Place& origin, Diagnost
       result.set(child_pointer(pointer, kind) + "/cells", std::move(cells), origin);
     }
   }
-  if (possible) scene = std::move(result);
-  return possible;
+  scene = std::move(result);
 }
 
 Diagnostic in_study(const Study& study, Diagnostic fault) {
@@ -193,9 +190,6 @@ void check_parts(const Study& study, Diagnostics& all_faults, MeshFiles& mesh_fi
       if (!is_of_method(fault, scene)) diagnostics.error(fault);
   };
   if (study.scene.root().is_object()) check_scene(study.scene);
-  for (const auto& [level, place] : study.refine)
-    if (JsonDocument scene = study.scene; scene.root().is_object() && level.is_number_integer() && level > 0)
-      refine_meshes(scene, 1, place, diagnostics);  // whether it can be
   for (const Knob& knob : study.vary)
     for (const PlacedValue& value : study.scene.root().is_object() ? knob.values : std::vector<PlacedValue>{}) {
       JsonDocument scene = study.scene;
@@ -215,7 +209,7 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
     CellInput refined;
     refined.document = study.scene;
     refined.refine = level.get<int>();
-    if (!refine_meshes(refined.document, refined.refine, level_place, diagnostics)) continue;
+    refine_meshes(refined.document, refined.refine, level_place);
     for_each_combination(study.vary, [&](const std::vector<const PlacedValue*>& varied) {
       CellInput scene = refined;
       for (std::size_t i = 0; i < varied.size(); ++i) {
@@ -242,8 +236,8 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
         // of the finest mesh, which a finer one may be too large for
         CellInput cell = *std::max_element(cells.begin(), cells.end(),
                                            [](const auto& a, const auto& b) { return a.refine < b.refine; });
-        if (set_reference(cell, reference, diagnostics))
-          complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
+        set_reference(cell, reference);
+        complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
       }
   for (const Diagnostic& fault : diagnostics.errors()) all_faults.error(in_study(study, fault));
   if (diagnostics.has_errors()) check_parts(study, all_faults, mesh_files);
@@ -264,7 +258,7 @@ CellInput reference_cell(const CellInput& cell, const Reference& reference, cons
                          MeshFiles& mesh_files) {
   CellInput other = cell;
   Diagnostics none;
-  set_reference(other, reference, none);
+  set_reference(other, reference);
   complete(other, reference.method.method, program_version, none, mesh_files);
   return other;
 }

@@ -45,8 +45,8 @@ CellInput reference_cell(const CellInput&, const Reference&, const std::string& 
 /// 16 hexadecimal digits that name the result of this input by this version of the program.
 std::string cell_id(const std::string& canonical, const std::string& program_version);
 
-/// Makes the scene's meshes finer: twice as many cells each way a level. Only generators can; an imported mesh is a
-/// fault (at `origin`) for levels above 0, and then nothing changes.
-bool refine_meshes(JsonDocument& scene, int level, const Place& origin, Diagnostics&);
+/// Makes the scene's meshes finer: twice as many cells each way a level, of generators; of an imported mesh as many more
+/// splits.
+void refine_meshes(JsonDocument& scene, int level, const Place& origin);
 
 }  // namespace stickslip

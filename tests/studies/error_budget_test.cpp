@@ -254,7 +254,7 @@ TEST_F(ErrorBudget, RoundingIsWhatAStiffPenaltyIsOffByFromItsOwnSolution) {
   }
 }
 
-TEST_F(ErrorBudget, IsNullWithItsReasonWhereAPartCannotBeMeasured) {
+TEST_F(ErrorBudget, MeasuresTheMeshOfAFileByItsSplits) {
   const auto folder = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "studies" / "meshes";
   const auto all = rows("cattaneo_mindlin.json",
                         {{"methods", {{{"penalty", {{"stiffness", 100}}}}}},
@@ -267,14 +267,12 @@ TEST_F(ErrorBudget, IsNullWithItsReasonWhereAPartCannotBeMeasured) {
                          {"time", {{"legs", {{1, 2}, {2, 2}}}}}});
   ASSERT_EQ(all.size(), 1u);
   const json mesh = part(all[0], "response:pull", "mesh");
-  EXPECT_TRUE(mesh["value"].is_null());
-  EXPECT_NE(mesh["reason"].get<std::string>().find("mesh halved once: refused"), std::string::npos) << mesh;
+  ASSERT_TRUE(mesh["value"].is_number()) << mesh;
+  EXPECT_GT(std::abs(mesh["value"].get<double>()), 1e-4) << mesh;  // of T3: a share that one sees
+  EXPECT_LT(std::abs(mesh["value"].get<double>()), 0.1) << mesh;
   const json& budget = all[0]["error_budget"];
-  ASSERT_EQ(budget["failed"].size(), 2u) << budget;
-  EXPECT_EQ(budget["failed"][0]["status"], "refused");
-  EXPECT_NE(budget["failed"][0]["message"].get<std::string>().find("imported mesh"), std::string::npos) << budget;
+  EXPECT_TRUE(budget["failed"].empty()) << budget;
   EXPECT_TRUE(budget["quantities"]["response:pull"]["error"].is_null());  // no reference
-  EXPECT_EQ(budget["quantities"]["response:pull"]["without"][0], "mesh");
 }
 
 TEST_F(ErrorBudget, OfARunThatFailedSaysSo) {

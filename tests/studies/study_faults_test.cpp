@@ -200,28 +200,20 @@ TEST_F(StudyFaults, OfAMissingSceneAreToldWhateverIsVaried) {
   EXPECT_THAT(diagnostics_.text(), HasSubstr(R"(the key "scene" is missing)"));
 }
 
-TEST_F(StudyFaults, CannotTakeAnOverkillReferenceOfAnImportedMesh) {
+TEST_F(StudyFaults, OfAnImportedMeshThatIsSplitTooOftenAreAtTheLevel) {
   std::filesystem::copy_file(STICKSLIP_SOURCE_DIR "/studies/meshes/half_disk_coarse.msh", folder_ / "disk.msh");
   const auto scene = R"({"bodies": {"disk": {"mesh": {"gmsh": "disk.msh", "body": "disk"},
       "material": {"linear_elastic": {"E": 1, "nu": 0}}}}, "time": {"end": 1, "steps": 1}})";
-  EXPECT_THAT(cells("{\"scene\": \"scene.json\", \"methods\": [{\"penalty\": {}}],\n"
-                    " \"reference\": [{\"overkill\": {\"refine\": 1}}]}",
-                    scene),
+  const auto found = cells(R"({"scene": "scene.json", "refine": [0, 1], "methods": [{"penalty": {}}],
+      "reference": [{"overkill": {"refine": 1}}]})",
+                           scene);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[1].document.root()["bodies"]["disk"]["mesh"]["split"], 1);
+  EXPECT_NE(found[0].canonical, found[1].canonical);
+  EXPECT_THAT(cells("{\"scene\": \"scene.json\", \"methods\": [{\"penalty\": {}}],\n \"refine\": [0, 8]}", scene),
               IsEmpty());
   EXPECT_THAT(diagnostics_.text(),
-              HasSubstr("cost.study.json:2:16: /reference/0: refines /bodies/disk/mesh, an imported mesh"));
-}
-
-TEST_F(StudyFaults, CannotRefineAnImportedMesh) {
-  std::filesystem::copy_file(STICKSLIP_SOURCE_DIR "/studies/meshes/half_disk_coarse.msh", folder_ / "disk.msh");
-  const auto scene = R"({"bodies": {"disk": {"mesh": {"gmsh": "disk.msh", "body": "disk"},
-      "material": {"linear_elastic": {"E": 1, "nu": 0}}}}, "time": {"end": 1, "steps": 1}})";
-  EXPECT_EQ(cells(R"({"scene": "scene.json", "refine": [0], "methods": [{"penalty": {}}]})", scene).size(), 1u);
-  EXPECT_THAT(cells("{\"scene\": \"scene.json\", \"methods\": [{\"penalty\": {}}],\n \"refine\": [0, 1]}", scene),
-              IsEmpty());
-  EXPECT_THAT(
-      diagnostics_.text(),
-      HasSubstr("cost.study.json:2:16: /refine/1: refines /bodies/disk/mesh, an imported mesh, which cannot be"));
+              HasSubstr("cost.study.json:2:16: /refine/1: is 8; must be a whole number from 0 to 7"));
 }
 
 TEST_F(StudyFaults, ReportsFaultsOfTheSceneInTheSceneOnce) {
