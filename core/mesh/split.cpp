@@ -6,7 +6,8 @@
 namespace stickslip {
 namespace {
 
-/// Nodes and their weights: the place of a new node.
+/// Nodes and their weights: the place of a new node. Weights are values of the shape functions (core/solids/shapes.hpp)
+/// at the natural coordinates of the new node.
 using Weights = std::vector<std::pair<int, double>>;
 
 class Splitting {
@@ -36,10 +37,10 @@ class Splitting {
     return found->second;
   }
 
-  /// The node at a quarter of a quadratic edge, between its end `near` and its middle.
-  int quarter(int near, int far, int middle) {
-    const auto [found, is_new] = quarters_.emplace(std::pair{near, middle}, -1);
-    if (is_new) found->second = add({{near, 0.375}, {far, -0.125}, {middle, 0.75}});  // N_i at t = 1/4
+  /// The node at a quarter of a quadratic edge, between its end `near` and its middle `halfway`.
+  int quarter(int near, int far, int halfway) {
+    const auto [found, is_new] = quarters_.emplace(std::pair{near, halfway}, -1);
+    if (is_new) found->second = add({{near, 0.375}, {far, -0.125}, {halfway, 0.75}});  // N_i at t = 1/4
     return found->second;
   }
 
@@ -90,9 +91,9 @@ class Splitting {
       centre.emplace_back(c[k], quadratic ? -0.25 : 0.25);
       if (quadratic) centre.emplace_back(m[k], 0.5);
     }
-    const int middle = add(std::move(centre));
-    std::vector<int>
-        inner;  // between the middle m[k] and the centre: (0, -1/2) in the element turned so that k is below
+    const int inside = add(std::move(centre));
+    // Between the middle m[k] and the centre, at (0, -1/2) in the element turned so that its side k is below.
+    std::vector<int> inner;
     for (int k = 0; quadratic && k < 4; ++k) {
       Weights weights = {{m[k], 0.75}, {m[(k + 1) % 4], 0.375}, {m[(k + 2) % 4], 0.25}, {m[(k + 3) % 4], 0.375}};
       for (const int corner : c) weights.emplace_back(corner, -0.1875);
@@ -103,7 +104,7 @@ class Splitting {
       std::vector<int> sides;
       if (quadratic)
         sides = {quarter(c[k], c[(k + 1) % 4], m[k]), inner[k], inner[last], quarter(c[k], c[last], m[last])};
-      append({c[k], m[k], middle, m[last]}, sides);
+      append({c[k], m[k], inside, m[last]}, sides);
     }
   }
 

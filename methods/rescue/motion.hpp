@@ -20,7 +20,6 @@
 #include "methods/rescue/motion_pace.hpp"
 #include "methods/rescue/statics.hpp"
 #include "methods/rescue/work_bound.hpp"
-#include "methods/stepping/diagnosis.hpp"
 #include "methods/stepping/increment.hpp"
 
 namespace stickslip {
@@ -42,12 +41,119 @@ bool is_slow(const Model& model, const Vector<double>& damping, double alpha, co
 /// are none.
 template <class T>
 Vector<double> of_floating(const Run<T>& run, const State<T>& at) {
-  auto floating = run.floating;
+  auto floating = run.free.floating;
   for (std::size_t b = 0; b < floating.size(); ++b)
-    floating[b] = floating[b] && !detail::is_pressed(run.model, run.slots, b, at);
+    floating[b] = floating[b] && !is_pressed(run.model, run.slots, b, at);
   if (std::ranges::find(floating, 1) == floating.end()) return {};
   return damping(run.model, run.slots, floating);
 }
+
+namespace detail {
+
+/// The motion of one increment.
+template <class T>
+class OverdampedMotion {
+ public:
+  OverdampedMotion(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double time, bool several,
+                   const std::vector<char>& damped)
+      : run_(run),
+        previous_(previous),
+        factor_(factor),
+        time_(time),
+        several_(several),
+        all_damped_(damped.empty()),
+        damping_(damping(run.model, run.slots, damped)),
+        scales_(run.account.scales),
+        inexact_step_(!several && run.free.floating.empty()) {}
+
+  Increment<T> follow(const WorkBound& bound) {
+    State<T> place = previous_;
+    Increment<T> result;
+    do {
+      result = move_on(place);
+    } while (!result.usable() && pace_.goes_on() && !bound.is_spent());
+    result.history = std::move(history_);
+    result.newton = iterations_;
+    return result;
+  }
+
+ private:
+  /// A step of the motion from `place` to the next, and from there, where it may rest, the method. Usable: the solution.
+  Increment<T> move_on(State<T>& place) {
+    auto moved = step(place);
+    const double length = distance(place, moved.state);
+    if (!moved.usable() || (several_ && !pace_.allows(length))) {
+      pace_.fail();
+      return no_solution(std::move(moved));
+    }
+    pace_.move(length);
+    const bool may_rest = all_damped_ || is_slow(run_.model, damping_, pace_.alpha(), place, moved.state);
+    place = moved.state;
+    auto result = may_rest ? rest(place) : std::move(moved);
+    const bool near = pace_.is_near(distance(place, result.state));
+    if (result.usable() && may_rest && (!several_ || (near && result.state.contact.state == place.contact.state)))
+      return result;
+    if (length == 0 && inexact_step_)  // so near to rest that an inexact step begins solved
+      inexact_step_ = false;
+    else
+      pace_.hasten();
+    return result.usable() ? no_solution(std::move(result)) : result;
+  }
+
+  Increment<T> step(const State<T>& from) {
+    return attempt({from, {pace_.alpha() * damping_, compact(from)}, inexact_step_});
+  }
+
+  /// The unmodified equations, but for bodies that float still.
+  Increment<T> rest(const State<T>& from) {
+    Start<T> start{.state = from, .inexact_step = inexact_step_, .at_rest = true};
+    const Vector<double> held = of_floating(run_, from);
+    if (held.size() > 0) start.anchor = {held, compact(from)};
+    auto found = attempt(start);
+    if (held.size() == 0 || !found.usable()) return found;
+    const double force =
+        largest_nodal_norm(start.anchor.force(compact(found.state), run_.model.dimension), run_.model.dimension);
+    const bool bears = force > newton_of(run_.method).tolerance * run_.account.scales.force;
+    return bears ? no_solution(std::move(found)) : found;
+  }
+
+  Increment<T> attempt(const Start<T>& start) {
+    run_.account.scales = scales_;  // iterates on the way do not count
+    auto found = solve_increment(run_, previous_, factor_, time_, start);
+    history_.insert(history_.end(), found.history.begin(), found.history.end());
+    iterations_ += found.newton;
+    return found;
+  }
+
+  /// A step of the motion, or an attempt, that is no solution, whatever becomes of it.
+  static Increment<T> no_solution(Increment<T> increment) {
+    if (increment.usable()) {
+      increment.status = Status::cycle;
+      increment.message = "the motion does not come to rest";
+    }
+    increment.cut_off = false;
+    return increment;
+  }
+
+  Vector<T> compact(const State<T>& at) const { return to_compact(run_.model, at.displacement); }
+  double distance(const State<T>& from, const State<T>& to) const {
+    return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), run_.model.dimension);
+  }
+
+  Run<T>& run_;
+  const State<T>& previous_;
+  const std::vector<double>& factor_;
+  const double time_;
+  const bool several_, all_damped_;
+  const Vector<double> damping_;  ///< D
+  const RunScales scales_;
+  bool inexact_step_;  ///< (multipliers that are not unique, and bodies that float, keep what an inexact step leaves)
+  MotionPace pace_;
+  std::vector<IterationRecord> history_;
+  int iterations_ = 0;
+};
+
+}  // namespace detail
 
 /// Follows the overdamped motion from `previous` until the method solves the unmodified equations. `damped`: per body,
 /// whether D is its own; empty: all are damped, and the method tries after each step. `several`: there may be more
@@ -57,68 +163,7 @@ Vector<double> of_floating(const Run<T>& run, const State<T>& at) {
 template <class T>
 Increment<T> follow_motion(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double time,
                            bool several, const std::vector<char>& damped, const WorkBound& bound) {
-  constexpr const char* restless = "the motion does not come to rest";
-  const Vector<double> D = damping(run.model, run.slots, damped);
-  const RunScales scales = run.account.scales;
-  std::vector<IterationRecord> history;
-  int iterations = 0;
-  // (multipliers that are not unique, and bodies that float, keep what an inexact step leaves)
-  bool inexact_step = !several && run.floating.empty();
-  const auto bears_force = [&](const Anchor<T>& anchor, const State<T>& at) {
-    const Vector<T> force = anchor.force(to_compact(run.model, at.displacement), run.model.dimension);
-    return largest_nodal_norm(force, run.model.dimension) > newton_of(run.method).tolerance * run.account.scales.force;
-  };
-  const auto attempt = [&](const State<T>& from, double alpha) {
-    run.account.scales = scales;  // iterates on the way do not count
-    Start<T> start{from, {}, inexact_step};
-    start.at_rest = alpha == 0;
-    const Vector<double> held = alpha > 0 ? Vector<double>(alpha * D) : of_floating(run, from);
-    if (held.size() > 0) start.anchor = {held, to_compact(run.model, from.displacement)};
-    auto found = solve_increment(run, previous, factor, time, start);
-    history.insert(history.end(), found.history.begin(), found.history.end());
-    iterations += found.newton;
-    if (alpha == 0 && found.usable() && held.size() > 0 && bears_force(start.anchor, found.state)) {
-      found.status = Status::cycle;
-      found.message = restless;
-    }
-    return found;
-  };
-  const auto distance = [&](const State<T>& from, const State<T>& to) {
-    return largest_nodal_norm(Vector<T>(to.displacement - from.displacement), run.model.dimension);
-  };
-  Increment<T> result;
-  State<T> rest = previous;
-  MotionPace pace;
-  do {
-    auto moved = attempt(rest, pace.alpha());
-    const double length = distance(rest, moved.state);
-    if (!moved.usable() || (several && !pace.allows(length))) {
-      pace.fail();
-      if (moved.usable()) moved.status = Status::cycle;
-      moved.cut_off = false;  // a step is no solution, whatever becomes of it
-      result = std::move(moved);
-      continue;
-    }
-    pace.move(length);
-    const bool may_rest = damped.empty() || is_slow(run.model, D, pace.alpha(), rest, moved.state);
-    rest = moved.state;
-    result = may_rest ? attempt(rest, 0) : std::move(moved);
-    const bool near = pace.is_near(distance(rest, result.state));
-    const bool settled = may_rest && (!several || (near && result.state.contact.state == rest.contact.state));
-    if (result.usable() && settled) break;
-    if (result.usable()) {
-      result.status = Status::cycle;
-      result.cut_off = false;
-      result.message = restless;
-    }
-    if (length == 0 && inexact_step)  // so near to rest that an inexact step begins solved
-      inexact_step = false;
-    else
-      pace.hasten();
-  } while (pace.goes_on() && !bound.is_spent());
-  result.history = std::move(history);
-  result.newton = iterations;
-  return result;
+  return detail::OverdampedMotion<T>(run, previous, factor, time, several, damped).follow(bound);
 }
 
 }  // namespace stickslip

@@ -72,8 +72,8 @@ class IncrementSearch {
   bool balances() const { return unbalanced_body(run_.model, run_.slots, time_) == balanced; }
 
   std::optional<Increment<T>> rest_of_floating_bodies() {
-    if (run_.floating.empty() || !rescues_ || !balances()) return std::nullopt;
-    auto rest = follow_motion(run_, previous_, factor_, time_, false, run_.movable, bound_);
+    if (run_.free.floating.empty() || !rescues_ || !balances()) return std::nullopt;
+    auto rest = follow_motion(run_, previous_, factor_, time_, false, run_.free.movable, bound_);
     if (rest.usable()) return rest;
     run_.account.scales = before_;
     return std::nullopt;

@@ -51,10 +51,9 @@ class WorkBound {
  private:
   // Bounds in units of max_iterations: the most, and the least. Steps that succeeded took up to 20.
   static constexpr long equilibria_in_vain = 50, few_in_vain = 4;
-  static constexpr long dofs_in_vain =
-      2'000'000;                           // iterations times displacements: 3 to 10 s, of 5 to 15 ms each at 3000
-  static constexpr long spent_again = 10;  // where the run was dear so far, it may be so on
-  static constexpr long least_each = 100;  // for a small max_iterations, which is chosen to have steps cut
+  static constexpr long dofs_in_vain = 2'000'000;  // iterations times displacements: 3 to 10 s at 3000
+  static constexpr long spent_again = 10;          // where the run was dear so far, it may be so on
+  static constexpr long least_each = 100;          // for a small max_iterations, which is chosen to have steps cut
   const Counters& counters_;
   long each_, most_ = 0, vain_ = 0, before_ = 0;
 };

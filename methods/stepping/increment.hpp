@@ -7,6 +7,7 @@
 #include "core/engine/condensation.hpp"
 #include "methods/newton/equilibrium.hpp"
 #include "methods/newton/regularisation.hpp"
+#include "methods/stepping/free_bodies.hpp"
 
 namespace stickslip {
 
@@ -30,10 +31,7 @@ struct Run {
   Uniqueness uniqueness = Uniqueness::unique;
   std::shared_ptr<Condensation<T>> condensation = nullptr;  ///< where all branches are tried; made on demand
   double start = 0;                                         ///< time at which the increment begins
-  /// Per body: it is free to move where the increment begins, and nothing presses on it; empty: no body is.
-  std::vector<char> floating = {};
-  /// If a body is, per body: supports alone leave it free to move; else empty.
-  std::vector<char> movable = {};
+  FreeBodies free = {};                                     ///< where the increment begins, of nonlinear bodies
 };
 
 /// Where a method begins to look for an increment's solution, and what holds the bodies there.

@@ -124,12 +124,12 @@ bool drives_together(const Run<T>& run, double start, double end, const Incremen
 
 /// Ends a step to the time `target` that found no solution: the increment that failed first is then the last.
 template <class T>
-void give_up(const Run<T>& run, double target, const FreeBodies& free, const WorkBound& bound, Increment<T> failed,
+void give_up(const Run<T>& run, double target, const WorkBound& bound, Increment<T> failed,
              std::vector<Increment<T>>& increments) {
   diagnose(run.model, run.slots, target, prevents_penetration(run.method), failed);
   const auto add = [&](const std::string& words) { failed.message += (failed.message.empty() ? "" : "; ") + words; };
   const bool is_named = failed.status == Status::no_equilibrium || failed.status == Status::infeasible;
-  if (!free.words.empty() && !is_named) add("where the step begins, " + free.words);
+  if (!run.free.words.empty() && !is_named) add("where the step begins, " + run.free.words);
   if (bound.is_spent() && !is_named) add(bound.in_words());
   if (!is_named && has_abrupt_friction(run.model, run.slots)) add(abrupt_friction_message);
   failed.time = target;
@@ -163,19 +163,17 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
   WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations,
                   spent_on(trajectory.increments));
   const bool linear = run.model.effects.linear_bulk;
-  FreeBodies free;
+  run.free = {};
   if (!linear)
-    free = free_bodies(run.model, run.slots, start_count ? trajectory.increments.back().state : trajectory.initial,
-                       start_count == 0);
-  run.floating = free.floating;
-  run.movable = free.movable;
+    run.free = free_bodies(run.model, run.slots, start_count ? trajectory.increments.back().state : trajectory.initial,
+                           start_count == 0);
   while (true) {
     const bool last = reached + step >= target - 1e-9 * (target - start);
     const double next = last ? target : reached + step;
     const auto& increments = trajectory.increments;
     const State<T>& previous = increments.empty() ? trajectory.initial : increments.back().state;
     const auto factor = increments.empty() ? std::vector<double>{} : increments.back().rho_factor;
-    const bool may_move = linear || !may_cut || !free.words.empty() || step < patient * (target - start);
+    const bool may_move = linear || !may_cut || !run.free.words.empty() || step < patient * (target - start);
     bound.begin();
     run.start = reached;
     auto increment = find_increment(run, previous, factor, next, bound, may_move);
@@ -209,7 +207,7 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
   }
   failed->cutbacks = cutbacks;
   trajectory.increments.resize(start_count);
-  give_up(run, target, free, bound, std::move(*failed), trajectory.increments);
+  give_up(run, target, bound, std::move(*failed), trajectory.increments);
   return false;
 }
 

@@ -75,10 +75,11 @@ const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneRe
   return &found->second;
 }
 
-/// The mesh, split as often as `node` says: into ten million elements at most.
+/// The mesh, split as often as `node` says: into a million elements at most, as they are made before any memory is
+/// estimated.
 std::optional<MeshDescription> split_often(ImportedMesh mesh, const JsonNode& node) {
   int most = 0;
-  for (double elements = 4.0 * mesh.mesh.element_count(); elements <= 1e7; elements *= 4) ++most;
+  for (double elements = 4.0 * mesh.mesh.element_count(); elements <= 1e6; elements *= 4) ++most;
   const auto times = node.count(0, most);
   if (!times) return std::nullopt;
   for (int k = 0; k < *times; ++k) mesh = split(mesh);

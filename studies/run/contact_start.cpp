@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/model/state.hpp"
+#include "methods/stepping/free_bodies.hpp"
 
 namespace stickslip {
 namespace {
@@ -131,11 +132,9 @@ std::vector<Warning> contacts_never_closed(const CaseResult& result) {
 }
 
 bool is_held_by_contact_alone(const Model& model, std::size_t b) {
-  const auto& body = model.bodies[b];
-  if (!is_continuum(body.mesh.shape)) return false;
-  return std::ranges::none_of(model.constraints, [&](const Constraint& held) {
-    const int node = held.dof / model.dimension - body.first_node;
-    return held.support >= 0 && node >= 0 && node < body.mesh.node_count;
+  if (!is_continuum(model.bodies[b].mesh.shape)) return false;
+  return std::ranges::none_of(model.constraints, [&, body = nodes_of_body(model, b)](const Constraint& held) {
+    return held.support >= 0 && body.has(held.dof / model.dimension);
   });
 }
 

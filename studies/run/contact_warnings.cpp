@@ -280,6 +280,7 @@ ContactMeasures measures_of_contact(const Problem& problem, const State<double>&
     measures.moment = unbalanced_moment(problem, state, contact);
   return measures;
 }
+
 void add_contact_warnings(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& problem = *result.problem;
   const auto& scene = problem.model.scene;

@@ -100,7 +100,7 @@ std::string advice_in_words(const Advisable& scene) {
   if (scene.may_be_segments) ways.emplace_back("segments");
   const std::string last = ways.back();
   ways.pop_back();
-  return "try " + (ways.empty() ? last : fmt::format("{} or {}", fmt::join(ways, ", "), last));
+  return "try " + (ways.empty() ? last : fmt::format("{}, or {}", fmt::join(ways, ", "), last));
 }
 
 void explain_failed_contact(const Problem& problem, Trajectory<double>& trajectory) {

@@ -29,7 +29,7 @@ struct Advisable {
 };
 Advisable advisable(const Model& model);
 
-/// What to try if iterations did not converge: "try more steps or segments". Nothing that the scene lacks, or is so
+/// What to try if iterations did not converge: "try more steps, or segments". Nothing that the scene lacks, or is so
 /// already.
 std::string advice_in_words(const Advisable& scene);
 

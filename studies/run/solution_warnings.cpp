@@ -106,7 +106,7 @@ void add_mechanisms(const CaseResult& result, std::vector<Warning>& warnings) {
     const std::string& name = model.scene.bodies[b].name;
     if (const std::string joint =
             detail::free_joint(model, result.problem->slots, b, initial,
-                               detail::touching_states(model, result.problem->slots, initial.contact.state));
+                               touching_states(model, result.problem->slots, initial.contact.state));
         !joint.empty())
       warnings.push_back(
           {WarningCode::non_unique, name, 1, "hold its joints until the bars are in tension, and take small steps",
@@ -221,13 +221,8 @@ void add_solution_warnings(const CaseResult& result, std::vector<Warning>& warni
 
 const Body* loose_body(const Model& model) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const auto in_body = [&, first = model.bodies[b].first_node](int node) {
-      return node >= first && node < first + model.bodies[b].mesh.node_count;
-    };
-    const bool held = std::any_of(model.constraints.begin(), model.constraints.end(),
-                                  [&](const Constraint& c) { return in_body(c.dof / model.dimension); });
-    const bool touched = std::any_of(model.contact_nodes.begin(), model.contact_nodes.end(), in_body);
-    if (!held && !touched) return &model.scene.bodies[b];
+    const auto in_body = [body = nodes_of_body(model, b)](int node) { return body.has(node); };
+    if (!is_supported(model, b) && std::ranges::none_of(model.contact_nodes, in_body)) return &model.scene.bodies[b];
   }
   return nullptr;
 }

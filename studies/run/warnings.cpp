@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "methods/newton/residuals.hpp"
-#include "methods/stepping/diagnosis.hpp"
+#include "methods/stepping/free_bodies.hpp"
 #include "studies/run/contact_start.hpp"
 #include "studies/run/contact_warnings.hpp"
 #include "studies/run/locking_warnings.hpp"
@@ -164,7 +164,7 @@ std::string motion_of_floating_body(const Problem& problem, const State<double>&
     if (!(-state.contact.traction[points[p].multiplier] > std::max(pressing * largest, least)))
       states[p] = ContactState::open;
   }
-  return detail::free_motion(model, slots, b, state, states);
+  return free_motion(model, slots, b, state, states);
 }
 
 void add_floating_bodies(const CaseResult& result, std::vector<Warning>& warnings) {

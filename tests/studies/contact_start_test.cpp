@@ -117,14 +117,14 @@ TEST(FailedContact, GivesNumbersAloneWhereThePatternHasNoCause) {
 
 TEST(FittingAdvice, NamesNoScaleWithoutContact) {
   EXPECT_EQ(advice_in_words({}), "try more steps");
-  EXPECT_EQ(advice_in_words({.contact = true}), "try more steps or a smaller stiffness or scale");
+  EXPECT_EQ(advice_in_words({.contact = true}), "try more steps, or a smaller stiffness or scale");
 }
 
 TEST(FittingAdvice, NamesWaysThatTheSceneDoesNotGo) {
   EXPECT_EQ(advice_in_words({.contact = true, .may_be_segments = true}),
-            "try more steps, a smaller stiffness or scale or segments");
+            "try more steps, a smaller stiffness or scale, or segments");
   EXPECT_THAT(advice_in_words({true, true, true, true}),
-              testing::EndsWith(", the other side as the slave, a smooth master or segments"));
+              testing::EndsWith(", the other side as the slave, a smooth master, or segments"));
 }
 
 TEST(FittingAdvice, ARigidPolylineThatIsSmoothIsNotToBecomeSo) {

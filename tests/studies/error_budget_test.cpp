@@ -275,6 +275,35 @@ TEST_F(ErrorBudget, MeasuresTheMeshOfAFileByItsSplits) {
   EXPECT_TRUE(budget["quantities"]["response:pull"]["error"].is_null());  // no reference
 }
 
+/// A tip lies between the two nodes of a side that supports hold: halved, the side has a node inside of it.
+TEST_F(ErrorBudget, IsNullWithItsReasonWhereAPartCannotBeMeasured) {
+  const json box = {{"min", {0, 0}}, {"max", {1, 1}}, {"cells", {1, 1}}}, rubber = {{"E", 1000}, {"nu", 0.3}};
+  const auto all =
+      rows("stop.json",
+           {{"methods", {{{"penalty", {{"stiffness", 100}}}}}},
+            {"errors", {"response:u"}},
+            {"error_budget", {{"copies", 2}}}},
+           {{"bodies",
+             {{"mass",
+               {{"mesh", {{"point", nullptr}, {"box", box}}},
+                {"material", {{"grounded_spring", nullptr}, {"linear_elastic", rubber}}}}}}},
+            {"obstacles", {{"wall", {{"plane", nullptr}, {"circle", {{"center", {0.5, -0.03}}, {"radius", 0.05}}}}}}},
+            {"contacts", {{"stop", {{"slave", "mass.bottom"}}}}},
+            {"supports", {{{"on", "mass.bottom"}, {"move", {{"x", 0}, {"y", 0}}}}}},
+            {"loads", {{{"on", "mass.top"}, {"pressure", 1}}}},
+            {"responses", {{"press", nullptr}, {"u", {{"displacement", {{"on", "mass.top"}, {"component", "y"}}}}}}},
+            {"parameters", nullptr}});
+  ASSERT_EQ(all.size(), 1u);
+  const json mesh = part(all[0], "response:u", "mesh");
+  EXPECT_TRUE(mesh["value"].is_null());
+  EXPECT_NE(mesh["reason"].get<std::string>().find("mesh halved once: infeasible"), std::string::npos) << mesh;
+  const json& budget = all[0]["error_budget"];
+  ASSERT_EQ(budget["failed"].size(), 2u) << budget;
+  EXPECT_EQ(budget["failed"][0]["status"], "infeasible");
+  EXPECT_NE(budget["failed"][0]["message"].get<std::string>().find("penetrates by 0.02"), std::string::npos) << budget;
+  EXPECT_EQ(budget["quantities"]["response:u"]["without"][0], "mesh");
+}
+
 TEST_F(ErrorBudget, OfARunThatFailedSaysSo) {
   const auto all =
       rows("pull_out.json", {{"methods", {{{"uzawa_al", {{"max_augmentations", 1}}}}}}, {"error_budget", true}});

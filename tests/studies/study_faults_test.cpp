@@ -210,10 +210,10 @@ TEST_F(StudyFaults, OfAnImportedMeshThatIsSplitTooOftenAreAtTheLevel) {
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[1].document.root()["bodies"]["disk"]["mesh"]["split"], 1);
   EXPECT_NE(found[0].canonical, found[1].canonical);
-  EXPECT_THAT(cells("{\"scene\": \"scene.json\", \"methods\": [{\"penalty\": {}}],\n \"refine\": [0, 8]}", scene),
+  EXPECT_THAT(cells("{\"scene\": \"scene.json\", \"methods\": [{\"penalty\": {}}],\n \"refine\": [0, 7]}", scene),
               IsEmpty());
   EXPECT_THAT(diagnostics_.text(),
-              HasSubstr("cost.study.json:2:16: /refine/1: is 8; must be a whole number from 0 to 7"));
+              HasSubstr("cost.study.json:2:16: /refine/1: is 7; must be a whole number from 0 to 6"));
 }
 
 TEST_F(StudyFaults, ReportsFaultsOfTheSceneInTheSceneOnce) {
