@@ -317,7 +317,7 @@ FAULTS = [
      "starts_.push_back({step, run.account, <<<run.engine.memory()>>>});", "decltype(run.engine.memory()){}"),
     ("adjoint without the derivative of a volume", "core/solids/gradient_work.hpp",
      "coordinates += <<<of_volume>>> * gradient.dN", "0.0"),
-    ("von Mises without its shear", "studies/run/fields.cpp", "0.5 * normal + <<<3>>> * (s[3]", "0"),
+    ("von Mises without its shear", "studies/run/element_fields.cpp", "0.5 * normal + <<<3>>> * (s[3]", "0"),
     ("tangential traction on the master", "studies/run/fields.cpp",
      "t -= <<<state.contact.traction[point.multiplier + 1 + a]>>> * geometry.tangents.col(a);",
      "-state.contact.traction[point.multiplier + 1 + a]"),

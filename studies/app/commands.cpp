@@ -26,10 +26,10 @@
 #include "studies/run/contact_start.hpp"
 #include "studies/run/explain.hpp"
 #include "studies/run/export_system.hpp"
-#include "studies/run/fields.hpp"
 #include "studies/run/film.hpp"
 #include "studies/run/gradient_report.hpp"
 #include "studies/run/ledger_forecast.hpp"
+#include "studies/run/picture_json.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/sweep/closed_forms.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "core/model/state.hpp"
 #include "methods/stepping/free_bodies.hpp"
+#include "studies/run/contact_points.hpp"
 
 namespace stickslip {
 namespace {
@@ -27,11 +28,6 @@ void add(StartGaps& all, const StartGaps& more) {
 
 /// Name under which a contact is taken together with others.
 const std::string& rule_of(const Contact& contact) { return contact.group.empty() ? contact.name : contact.group; }
-
-/// Whether a point faces its master in a field; others have no gap.
-bool faces_master(const ContactPoint& point, const Facing& facing) {
-  return point.curve < 0 || facing.patch != Patch::none || !facing.pieces.empty();
-}
 
 /// Length up to which a gap or an overlap of a point is rounding. `motion`: size of the motion of contact, length.
 double negligible_gap(const ContactPoint& point, double motion) {

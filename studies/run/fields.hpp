@@ -1,9 +1,8 @@
-/// Pictures of a case: the .vtu / .pvd that ParaView reads, and the picture.json that the report draws.
+/// The .vtu and .pvd of a case that ParaView reads.
 #pragma once
 
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,16 @@ namespace stickslip {
 
 /// What the names of the files of fields are.
 inline constexpr const char* field_names[] = {"fields.pvd", "fields_#.vtu", "obstacles_#.vtu"};
+
+/// A time whose fields are kept.
+struct Moment {
+  std::size_t number;  ///< of the step, from 1 on; 0: the start
+  double time;
+  const State<double>& state;
+};
+
+/// Every `every`-th solved step and the last of them, and the start before them; 0: the last step alone.
+std::vector<Moment> kept_moments(const CaseResult& result, int every);
 
 /// Gives name and content of fields_NNNN.vtu for every `every`-th step and the last one (0: the last alone), and of
 /// fields.pvd. Of several steps there is the start too, as fields_0000.vtu, and in the plane the obstacles of each as
@@ -37,13 +46,5 @@ bool contacts_share_nodes(const Model& model);
 
 /// Force per area on the slave at contact point p.
 Vector<double> traction_vector(const Problem& problem, const State<double>& state, int p);
-
-/// Mean equivalent plastic strain of each element of a body; 0 where it does not flow.
-std::vector<double> mean_plastic_strains(const Problem& problem, const State<double>& state, int body);
-
-/// The last step as the report's picture: points, elements, displacement, von Mises stress, contact points, obstacles
-/// as at the start with what they moved by since, and the kinds of the responses by name. `every`: as for_each_field;
-/// of several steps, `frames` has what differs in each.
-nlohmann::json picture_json(const CaseResult& result, int every = 0);
 
 }  // namespace stickslip

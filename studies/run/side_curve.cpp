@@ -6,9 +6,7 @@
 #include "core/model/pairing.hpp"
 
 namespace stickslip {
-namespace {
 
-/// Displacement of a place of an obstacle at a time.
 PlanePlace obstacle_displacement(const Problem& problem, const Obstacle& obstacle, const PlanePlace& x, double time) {
   const auto& numbers = problem.slots.numbers;
   PlanePlace u = PlanePlace::Zero();
@@ -19,8 +17,6 @@ PlanePlace obstacle_displacement(const Problem& problem, const Obstacle& obstacl
                          problem.model.scene.finite_strain, numbers);
   return u;
 }
-
-}  // namespace
 
 SideCurve curve_of_side(const SideSet& side, const Points<double>& points, const Contact& contact, bool smooth) {
   SideCurve curve;

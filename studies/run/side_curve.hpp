@@ -1,4 +1,5 @@
-/// Sides and polylines as curves of their own, for searches of what a contact does not look for itself.
+/// Sides and polylines as curves of their own, for searches of what a contact does not look for itself; and where obstacles
+/// are.
 #pragma once
 
 #include <vector>
@@ -29,6 +30,9 @@ SideCurve curve_of_side(const SideSet& side, const Points<double>& points, const
 
 /// pre: the obstacle is a polyline
 SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, const Contact& contact, double time);
+
+/// Displacement, length, of the place x of an obstacle of the plane at a time.
+PlanePlace obstacle_displacement(const Problem& problem, const Obstacle& obstacle, const PlanePlace& x, double time);
 
 /// The master of Scene::contacts[c], if it is an obstacle; else nullptr.
 const Obstacle* obstacle_of(const Model& model, int c);

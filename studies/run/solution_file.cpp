@@ -9,6 +9,7 @@
 #include "core/solids/kinematics.hpp"
 #include "methods/newton/regularisation.hpp"
 #include "methods/stepping/checkpoints.hpp"
+#include "studies/run/element_fields.hpp"
 #include "studies/run/fields.hpp"
 
 namespace stickslip {

@@ -22,6 +22,7 @@
 #include "studies/run/certificate.hpp"
 #include "studies/run/explain.hpp"
 #include "studies/run/fields.hpp"
+#include "studies/run/picture_json.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/run/solution_file.hpp"
 #include "studies/sweep/attempt.hpp"

@@ -1,7 +1,7 @@
 /// Inputs that once ended the program: a typo in a body that contacts name, states that an adjoint let go.
 #include <gmock/gmock.h>
 
-#include "studies/run/fields.hpp"
+#include "studies/run/picture_json.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"

@@ -10,6 +10,7 @@
 #include "studies/io/atomic_file.hpp"
 #include "studies/report/picture.hpp"
 #include "studies/run/film.hpp"
+#include "studies/run/picture_json.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/studies/vtu_reader.hpp"
 #include "tests/support/scenes.hpp"

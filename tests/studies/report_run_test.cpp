@@ -6,6 +6,7 @@
 #include "studies/report/report.hpp"
 #include "studies/run/fields.hpp"
 #include "studies/run/film.hpp"
+#include "studies/run/picture_json.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/studies/recorded_study.hpp"
 #include "tests/studies/report_page.hpp"
