@@ -49,6 +49,8 @@ struct EndOfTurn {
   Number S::*start;
   double example;
 };
+template <class S>
+EndOfTurn(Number S::*, double) -> EndOfTurn<S>;
 
 /// A number of cells; numbers of cells along two directions.
 struct Count {
@@ -66,6 +68,8 @@ struct Grade {
   std::array<const char*, n> sides;
   double example;
 };
+template <class S, std::size_t n>
+Grade(std::string S::*, std::array<const char*, n>, double) -> Grade<S, n>;
 
 /// true or false; left out, what the struct begins with.
 struct Flag {};

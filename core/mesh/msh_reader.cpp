@@ -292,7 +292,7 @@ class Import {
       std::vector<Edge> segments;
       Side side;
       std::map<Edge, const MshElement*> listed;
-      const auto is_new = [&](const Edge& edge, const MshElement* element) {
+      const auto is_new = [&, &group = group](const Edge& edge, const MshElement* element) {
         const auto [first, inserted] = listed.try_emplace(edge.first < edge.second ? edge : turned(edge), element);
         if (!inserted) fault_twice(element, first->second, group);
         return inserted;

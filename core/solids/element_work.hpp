@@ -92,7 +92,7 @@ template <TensorLayout layout, class Law, std::size_t count, class Memory>
 PointWork<layout> point_work(const Law& law, const Tensor<double, layout>& H, const Tensor<double, layout>& A,
                              double volume, std::array<double, count>& by_law, const Memory& before, int branch,
                              const Memory& b, Memory& by_before) {
-  constexpr int components = H.size, memory = Law::memory;
+  constexpr int components = Tensor<double, layout>::size, memory = Law::memory;
   using Probe = Dual<components + memory + static_cast<int>(count)>;
   const auto probed = law.with(seeded_numbers<Probe>(law, components + memory));
   const auto probe = seeded<Probe>(H);

@@ -106,7 +106,7 @@ Mat<T, 3> cofactors(const Mat<T, 3>& A) {
 /// What is left of det F - 1 without tr H, F = I + H: of the components that matrix() has.
 template <class T, TensorLayout layout>
 T nonlinear_growth(const Tensor<T, layout>& H) {
-  if constexpr (H.in_space) {
+  if constexpr (Tensor<T, layout>::in_space) {
     const Mat<T, 3> A = H.matrix(), minors = cofactors<T>(A);
     return minors.trace() + dot(A.row(0), minors.row(0));
   } else {
@@ -118,7 +118,7 @@ T nonlinear_growth(const Tensor<T, layout>& H) {
 template <class T, TensorLayout layout>
 T growth_of_matrix(const Tensor<T, layout>& H) {
   T trace = H(0, 0) + H(1, 1);
-  if constexpr (H.in_space) trace += H(2, 2);
+  if constexpr (Tensor<T, layout>::in_space) trace += H(2, 2);
   return trace + nonlinear_growth(H);
 }
 

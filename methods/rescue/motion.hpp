@@ -44,7 +44,7 @@ Vector<double> of_floating(const Run<T>& run, const State<T>& at) {
   auto floating = run.free.floating;
   for (std::size_t b = 0; b < floating.size(); ++b)
     floating[b] = floating[b] && !is_pressed(run.model, run.slots, b, at);
-  if (std::ranges::find(floating, 1) == floating.end()) return {};
+  if (std::find(floating.begin(), floating.end(), 1) == floating.end()) return {};
   return damping(run.model, run.slots, floating);
 }
 

@@ -88,7 +88,7 @@ void VertexTie::find(const SolvedState& of, std::vector<Tie>& ties) {
     const bool touches = open && elastic_traction(slots, p) * state.contact.gap[p] <= negligible;
     if (open && !touches && !all) continue;
     const bool bears = -state.contact.traction[point.multiplier] > negligible;
-    for_each_vertex(model, state, p, [&](int first, int second) {
+    for_each_vertex(model, state, p, [&, &model = model, &slots = slots, time = time](int first, int second) {
       const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
       if (!changes_at(model.curves[point.curve].patches[first], at.bend)) return;
       if (std::abs(at.overshoot) <= weak_margin)
@@ -131,7 +131,7 @@ void for_each_vertex_way(const Model& model, const Slots<Direction>& slots, cons
   const Vector<Direction> compact = to_compact(model, displacement);
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     if (state.contact.state[p] == ContactState::open) continue;
-    for_each_vertex(model, state, p, [&](int first, int second) {
+    for_each_vertex(model, state, p, [&, &model = model, &slots = slots, time = time](int first, int second) {
       const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
       const auto& patch = model.curves[model.points[p].curve].patches[first];
       if (changes_at(patch, at.bend)) f(at.overshoot, at.length);

@@ -342,7 +342,7 @@ bool has_ended(const CaseResult& result) { return solved_steps(result).size() ==
 std::span<const StepResult> solved_steps(const CaseResult& result) {
   const auto end = std::find_if(result.steps.begin(), result.steps.end(),
                                 [](const StepResult& step) { return !step.increment->solved(); });
-  return {result.steps.begin(), end};
+  return std::span(result.steps).first(static_cast<std::size_t>(end - result.steps.begin()));
 }
 
 }  // namespace stickslip

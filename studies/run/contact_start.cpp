@@ -129,9 +129,10 @@ std::vector<Warning> contacts_never_closed(const CaseResult& result) {
 
 bool is_held_by_contact_alone(const Model& model, std::size_t b) {
   if (!is_continuum(model.bodies[b].mesh.shape)) return false;
-  return std::ranges::none_of(model.constraints, [&, body = nodes_of_body(model, b)](const Constraint& held) {
-    return held.support >= 0 && body.has(held.dof / model.dimension);
-  });
+  return std::none_of(model.constraints.begin(), model.constraints.end(),
+                      [&, body = nodes_of_body(model, b)](const Constraint& held) {
+                        return held.support >= 0 && body.has(held.dof / model.dimension);
+                      });
 }
 
 }  // namespace stickslip

@@ -54,7 +54,11 @@ bool may_overlook_master(const Model& model, int c) {
 }
 
 /// Normal force of a contact, positive in compression, and the largest penetration of its points.
-std::pair<double, double> press_and_penetration(const Problem& problem, const ContactField<double>& field, int c) {
+struct Press {
+  double force, penetration;
+};
+
+Press press_and_penetration(const Problem& problem, const ContactField<double>& field, int c) {
   double force = 0, penetration = 0;
   for (std::size_t p = 0; p < problem.model.points.size(); ++p) {
     const auto& point = problem.model.points[p];
@@ -78,7 +82,7 @@ void find_master_inside(const Problem& problem, const State<double>& state, doub
   const SideCurve master = obstacle
                                ? curve_of_polyline(problem, *obstacle, contact, time)
                                : curve_of_side(surface_of(model, slots.points, sides.master), points, contact, true);
-  const auto [force, penetration] = press_and_penetration(problem, state.contact, c);
+  const auto press = press_and_penetration(problem, state.contact, c);
   double stiffness = 0;
   int count = 0;
   for (std::size_t p = 0; p < model.points.size(); ++p)
@@ -91,14 +95,14 @@ void find_master_inside(const Problem& problem, const State<double>& state, doub
   // of what moves, and of coordinates: less is what a solution leaves
   const double nothing = 1e-6 * reach + 8 * unit_roundoff * points.cwiseAbs().maxCoeff();
   const CurveSearch search(slave.patches, slave.places);
-  for_each_vertex(master, [&](int, const PlanePlace& x, const PlanePlace& outward) {
+  for_each_vertex(master, [&, &slots = slots](int, const PlanePlace& x, const PlanePlace& outward) {
     const Facing facing = search.facing(x, outward);
     if (facing.patch == Patch::none) return;
-    const double depth = -slave.gap(facing, x) - slots.numbers(contact.offset) - penetration;
+    const double depth = -slave.gap(facing, x) - slots.numbers(contact.offset) - press.penetration;
     if (!(depth > nothing) || depth <= measures.inside) return;
     measures.inside = depth;
     measures.at = {x[0], x[1]};
-    measures.missing = force > 0 ? stiffness * depth / force : std::numeric_limits<double>::infinity();
+    measures.missing = press.force > 0 ? stiffness * depth / press.force : std::numeric_limits<double>::infinity();
   });
 }
 
@@ -113,7 +117,7 @@ double unbalanced_moment(const Problem& problem, const State<double>& state, int
     PlanePlace force = state.contact.traction[point.multiplier] * PlanePlace(geometry.normal[0], geometry.normal[1]);
     for (int a = 0; a < point.tangents; ++a)
       force += state.contact.traction[point.multiplier + 1 + a] * PlanePlace(geometry.tangents.col(a));
-    for_each_place(model, state.contact, p, [&](std::size_t n, int place) {
+    for_each_place(model, state.contact, p, [&, &model = model, &slots = slots](std::size_t n, int place) {
       const auto x = detail::place_of(model, slots, state, model.contact_nodes[place]);
       moment -= geometry.area * geometry.weights[static_cast<Eigen::Index>(n)] * (x[0] * force[1] - x[1] * force[0]);
     });
@@ -193,7 +197,7 @@ struct Width {
 
 Width width_of(const Problem& problem, const ContactField<double>& field, int c) {
   const auto& [model, slots, unused] = problem;
-  const auto place = [&](int node) -> PlanePlace { return slots.points.col(node).head<2>(); };
+  const auto place = [&slots = slots](int node) -> PlanePlace { return slots.points.col(node).head<2>(); };
   Width width;
   PlanePlace low, high;
   for (std::size_t p = 0; p < model.points.size(); ++p) {

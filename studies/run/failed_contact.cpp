@@ -85,7 +85,7 @@ Advisable advisable(const Model& model) {
     scene.other_side |= !obstacle && !contact.is_of_itself();
     scene.may_be_smooth |= facets && !contact.segment && contact.smoothing == Smoothing::none;
     scene.may_be_segments |=
-        facets && !contact.segment && std::ranges::any_of(model.points, [&](const auto& point) {
+        facets && !contact.segment && std::any_of(model.points.begin(), model.points.end(), [&](const auto& point) {
           return point.contact == static_cast<int>(c) && is_continuum(model.bodies[point.slave_body].mesh.shape);
         });
   }

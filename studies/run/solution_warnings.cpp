@@ -222,7 +222,8 @@ void add_solution_warnings(const CaseResult& result, std::vector<Warning>& warni
 const Body* loose_body(const Model& model) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto in_body = [body = nodes_of_body(model, b)](int node) { return body.has(node); };
-    if (!is_supported(model, b) && std::ranges::none_of(model.contact_nodes, in_body)) return &model.scene.bodies[b];
+    if (!is_supported(model, b) && std::none_of(model.contact_nodes.begin(), model.contact_nodes.end(), in_body))
+      return &model.scene.bodies[b];
   }
   return nullptr;
 }

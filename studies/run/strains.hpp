@@ -41,7 +41,8 @@ std::array<double, 4> stress_of(const Law<double>& law, const Tensor<double, lay
   return std::visit(
       [&]<class L>(const L& of) -> std::array<double, 4> {
         if constexpr (ContinuumLaw<L>) {
-          Mat<double, H.rows> s;
+          constexpr int rows = Tensor<double, layout>::rows;
+          Mat<double, rows> s;
           double across = 0, stretch = 1;  // out of the plane
           const auto take = [&](const auto&... remembered) {
             s = of.stress(H, remembered...).full();
@@ -55,10 +56,10 @@ std::array<double, 4> stress_of(const Law<double>& law, const Tensor<double, lay
           else
             take();
           if (of.is_finite) {
-            const Mat<double, H.rows> F = Mat<double, H.rows>::Identity() + H.full();
+            const Mat<double, rows> F = Mat<double, rows>::Identity() + H.full();
             s = s * F.transpose() / (F.determinant() * stretch);
           }
-          if constexpr (H.rows == 3) across = s(2, 2);
+          if constexpr (rows == 3) across = s(2, 2);
           return {s(0, 0), s(1, 1), across, s(0, 1)};
         }
         return {};

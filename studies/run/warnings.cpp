@@ -282,7 +282,7 @@ long steps_with(const CaseResult& result, std::size_t contact, std::vector<char>
 
 std::vector<Warning> warnings_of(const CaseResult& result) {
   std::vector<Warning> warnings = overlaps_at_start(*result.problem);
-  std::ranges::move(contacts_never_closed(result), std::back_inserter(warnings));
+  for (auto& warning : contacts_never_closed(result)) warnings.push_back(std::move(warning));
   add_deformations(result, warnings);
   add_slips(result, warnings);
   add_held_points(result, warnings);
