@@ -8,7 +8,10 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <unordered_map>
+
+#include "core/mesh/decimal.hpp"
 
 namespace stickslip {
 namespace {
@@ -89,9 +92,13 @@ class Tokens {
   template <class Value>
   Value number(const std::string& what, const char* kind) {
     const Token token = next(what);
-    Value value{};
-    const auto [end, error] = std::from_chars(token.text.data(), token.text.data() + token.text.size(), value);
-    if (error == std::errc() && end == token.text.data() + token.text.size()) return value;
+    if constexpr (std::is_same_v<Value, double>) {
+      if (const auto value = decimal(token.text)) return *value;
+    } else {
+      Value value{};
+      const auto [end, error] = std::from_chars(token.text.data(), token.text.data() + token.text.size(), value);
+      if (error == std::errc() && end == token.text.data() + token.text.size()) return value;
+    }
     const char* hint = token.text.front() == '$' ? ": the section has fewer entries than announced" : "";
     throw Fault{token.offset, what + " should stand here, " + kind + "; found " + shown(token) + hint};
   }
