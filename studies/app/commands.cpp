@@ -30,6 +30,7 @@
 #include "studies/run/gradient_report.hpp"
 #include "studies/run/ledger_forecast.hpp"
 #include "studies/run/picture_json.hpp"
+#include "studies/run/run_files.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/sweep/closed_forms.hpp"
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/run/run_files.hpp"
 #include "studies/run/simulation.hpp"
 
 namespace stickslip {

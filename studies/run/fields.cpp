@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/model/loading.hpp"
-#include "studies/io/output_folder.hpp"
 #include "studies/io/vtu.hpp"
 #include "studies/run/contact_points.hpp"
 #include "studies/run/element_fields.hpp"
@@ -202,11 +201,6 @@ void for_each_field(const CaseResult& result, int every, const std::function<voi
     entries.push_back({shown, obstacle_file(number), 1});
   }
   take("fields.pvd", pvd_text(entries));
-}
-
-void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every) {
-  for_each_field(result, every,
-                 [&](const std::string& name, const std::string& text) { write_output(directory / name, text); });
 }
 
 std::vector<std::string> field_files(const CaseResult& result, int every) {

@@ -1,7 +1,6 @@
 /// The .vtu and .pvd of a case that ParaView reads.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -35,10 +34,7 @@ std::vector<Moment> kept_moments(const CaseResult& result, int every);
 /// contact NAME alone then follow, contact_state_NAME and so on.
 void for_each_field(const CaseResult& result, int every, const std::function<void(std::string, std::string)>& take);
 
-/// Writes them (write_output).
-void write_fields(const std::filesystem::path& directory, const CaseResult& result, int every);
-
-/// Names of the files that write_fields writes, in order.
+/// Names of the files that write_fields() of studies/run/run_files.hpp writes, in order.
 std::vector<std::string> field_files(const CaseResult& result, int every);
 
 /// Whether some node is a slave in more than one contact.

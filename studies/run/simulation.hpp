@@ -2,17 +2,14 @@
 /// that use the library share it.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "studies/input/scene_reader.hpp"
-#include "studies/io/output_folder.hpp"
-#include "studies/run/ledger.hpp"
+#include "studies/run/case.hpp"
 
 namespace stickslip {
 
@@ -44,24 +41,5 @@ RunOptions run_options(const Input& input);
 /// Result of a run. `on_step` is called after each step of the scene; an exception from it ends the run. `trace`:
 /// records every iterate; nullptr: none.
 CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step = {}, Trace* trace = nullptr);
-
-/// The folder of a run, for result.json, fields and `others`. Throws what OutputFolder throws, and InputFault if it
-/// holds a study.
-OutputFolder folder_of_run(const std::filesystem::path& directory, const std::vector<std::string>& others = {});
-
-/// Deletes what an earlier run left, which would mix with the files of the next.
-void remove_run(const std::filesystem::path& directory);
-
-/// Writes DIR/fields.pvd with its .vtu files, DIR/solution.json where it is not too large, and then DIR/result.json
-/// (write_output). Returns the content of result.json (docs/results.md). `before`: files already written, for its
-/// ledger. Throws std::system_error if writing fails. pre: remove_run()
-nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
-                            const CaseResult& result, const Written& before = {});
-
-/// Bytes of files in a directory.
-double file_bytes(const std::filesystem::path& directory, const std::vector<std::string>& files);
-
-/// Names of the files that write_result writes, but for solution.json, of which result.json says whether it is there.
-std::vector<std::string> result_files(const Simulation& simulation, const CaseResult& result);
 
 }  // namespace stickslip

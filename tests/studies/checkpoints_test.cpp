@@ -4,6 +4,7 @@
 #include "studies/io/atomic_file.hpp"
 #include "studies/run/film.hpp"
 #include "studies/run/ledger_forecast.hpp"
+#include "studies/run/run_files.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"

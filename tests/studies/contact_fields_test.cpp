@@ -6,6 +6,7 @@
 
 #include "studies/io/atomic_file.hpp"
 #include "studies/run/fields.hpp"
+#include "studies/run/run_files.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/studies/vtu_reader.hpp"
 

@@ -11,6 +11,7 @@
 #include "studies/report/picture.hpp"
 #include "studies/run/film.hpp"
 #include "studies/run/picture_json.hpp"
+#include "studies/run/run_files.hpp"
 #include "tests/studies/cases.hpp"
 #include "tests/studies/vtu_reader.hpp"
 #include "tests/support/scenes.hpp"

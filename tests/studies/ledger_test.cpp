@@ -7,6 +7,7 @@
 
 #include "studies/run/explain.hpp"
 #include "studies/run/ledger_forecast.hpp"
+#include "studies/run/run_files.hpp"
 #include "studies/run/simulation.hpp"
 #include "tests/studies/cases.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "studies/io/input_fault.hpp"
 #include "studies/run/certificate.hpp"
+#include "studies/run/run_files.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/run/solution_file.hpp"
 #include "tests/studies/cases.hpp"
