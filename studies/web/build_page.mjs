@@ -1,0 +1,42 @@
+// node build_page.mjs SOURCE MODULE.js MODULE.wasm VERSION.hpp PAGE.html
+// Puts the page together: one file that holds the module, the scripts, the words, the scenes and the chart library.
+import {readFileSync, readdirSync, writeFileSync} from 'node:fs';
+import {join} from 'node:path';
+import {gzipSync} from 'node:zlib';
+
+const [source, glue, module, version_header, page] = process.argv.slice(2);
+const web = join(source, 'studies/web'), vega = join(source, 'third_party/vega');
+const read = (...path) => readFileSync(join(...path), 'utf8');
+const scripts = ['words.js', 'solver.js', 'scene.js', 'picture.js', 'panel.js', 'charts.js', 'derivative.js', 'link.js',
+                 'editor.js', 'lessons.js', 'main.js'];
+
+/** Texts inside of a <script> must not end it. */
+const inside = (text) => text.replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
+
+const lessons = JSON.parse(read(web, 'lessons.json'));
+const shipped = readdirSync(join(source, 'studies/scenes')).filter((name) => name.endsWith('.json') && !name.includes('.study.'))
+    .map((name) => 'studies/scenes/' + name);
+const scenes = {};
+for (const path of [...new Set([...lessons.map((lesson) => lesson.scene), ...shipped])].sort()) {
+  const text = read(source, path);
+  if (!text.includes('"gmsh"')) scenes[path] = text;  // their meshes are not on the page
+}
+
+const text_of = (name) => new RegExp(`string_view ${name} = "([^"]*)"`).exec(read(version_header))[1];
+const about = {version: text_of('number'), commit: text_of('git')};
+const notices = [read(source, 'LICENSE'), read(vega, 'THIRD_PARTY_NOTICES')].join('\n\n');
+
+const parts = {
+  'page.css': read(web, 'page.css'),
+  'module': gzipSync(readFileSync(module), {level: 9}).toString('base64'),
+  'glue': inside(read(glue)),
+  'worker.js': inside(read(web, 'worker.js')),
+  'words.en.json': inside(read(web, 'words.en.json')),
+  'lessons.json': inside(read(web, 'lessons.json')),
+  'scenes': inside(JSON.stringify(scenes)),
+  'about': inside(JSON.stringify(about)),
+  'notices': inside(notices),
+  'scripts': inside(scripts.map((name) => read(web, name)).join('\n')),
+  'vega': inside(read(vega, 'vega.min.js') + '\n' + read(vega, 'vega-lite.min.js')),
+};
+writeFileSync(page, read(web, 'page.html').replace(/\{\{([\w.]+)\}\}/g, (all, name) => parts[name]));

@@ -1,0 +1,254 @@
+'use strict';
+/** The scene as a drawing: bodies, obstacles, contact points with their states and tractions, and handles. */
+const Picture = (() => {
+  const NS = 'http://www.w3.org/2000/svg', WIDTH = 560, HEIGHT = 300, MARGIN = 26;
+  const STATES = ['stick', 'slip', 'closed', 'open'];
+  const SHADES = ['#f4f1de', '#d9e4a8', '#a8d483', '#6cbf80', '#3ba387', '#2a848c', '#31648c', '#3d4287', '#43176a'];  // the report's
+  let frame = null;  // {window, scale, ...} of the scene that is shown
+  let moving = null;
+
+  const element = (name, attributes = {}, ...inside) => {
+    const made = document.createElementNS(NS, name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    made.append(...inside);
+    return made;
+  };
+  const plus = (a, b) => [a[0] + b[0], a[1] + b[1]];
+
+  /** Where a point of an obstacle is: moved and turned as the scene says. */
+  function carried(moved, [x, y]) {
+    if (!moved) return [x, y];
+    if (!moved.center) return plus([x, y], moved.by);
+    const angle = moved.degrees * Math.PI / 180, dx = x - moved.center[0], dy = y - moved.center[1];
+    const [c, s] = moved.finite ? [Math.cos(angle), Math.sin(angle)] : [1, angle];
+    return plus(plus(moved.center, [c * dx - s * dy, s * dx + c * dy]), moved.by);
+  }
+
+  /** The picture of a step: the last one, or a frame. */
+  const at_step = (picture, step) => {
+    const frames = picture.frames ?? [], chosen = frames.find((one) => one.step === step);
+    return chosen ? {...picture, ...chosen} : picture;
+  };
+
+  const lumped = (picture) => picture.elements.every((nodes) => nodes.length === 2);
+
+  /** How many times as large displacements are drawn: 1 if they are seen anyway, or matter. */
+  function magnification(picture) {
+    if (picture.finite || lumped(picture)) return 1;
+    const [low, high] = box_of(picture.points), extent = Math.hypot(high[0] - low[0], high[1] - low[1]);
+    const largest = Math.max(...picture.displacement.map((u) => Math.hypot(u[0], u[1])));
+    if (!(largest > 0) || largest > 0.02 * extent) return 1;
+    const wanted = 0.04 * extent / largest, power = 10 ** Math.floor(Math.log10(wanted));
+    return [5, 2, 1].find((digit) => digit * power <= wanted) * power;
+  }
+
+  function box_of(points) {
+    const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+    for (const p of points) for (const k of [0, 1]) { low[k] = Math.min(low[k], p[k]); high[k] = Math.max(high[k], p[k]); }
+    return [low, high];
+  }
+
+  /** The window of a scene, in its lengths, and how long its arrows are. It is kept while the scene fits into it. */
+  function make_frame(picture, given) {
+    const times = magnification(picture), points = [...picture.points];
+    for (const step of [picture, ...(picture.frames ?? [])])
+      step.displacement.forEach((u, n) => points.push([picture.points[n][0] + times * u[0], picture.points[n][1] + times * u[1]]));
+    for (const obstacle of picture.obstacles) {
+      if (obstacle.circle) {
+        const [x, y] = obstacle.circle.center, r = obstacle.circle.radius;
+        points.push([x - r, y - r], [x + r, y + r]);
+      } else if (lumped(picture)) points.push(...(obstacle.plane ? [obstacle.plane.point] : obstacle.polyline?.points ?? []));
+    }
+    let [low, high] = given ? [given.slice(0, 2), given.slice(2)] : box_of(points);
+    const size = Math.max(high[0] - low[0], high[1] - low[1]) || 1;
+    if (!given) {
+      const air = lumped(picture) ? 0.35 * size : 0.06 * size;
+      low = [low[0] - air, low[1] - air]; high = [high[0] + air, high[1] + air];
+      if (high[1] - low[1] < 0.3 * size) { const middle = (low[1] + high[1]) / 2; low[1] = middle - 0.3 * size; high[1] = middle + 0.3 * size; }
+    }
+    const scale = Math.min((WIDTH - 2 * MARGIN) / (high[0] - low[0]), (HEIGHT - 2 * MARGIN) / (high[1] - low[1]));
+    const middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
+    const tractions = [picture, ...(picture.frames ?? [])].flatMap((step) => step.traction ?? []);
+    const strongest = Math.max(0, ...tractions.map((t) => Math.hypot(t[0], t[1])));
+    return {times, scale, middle, low, high, size, strongest, fixed: Boolean(given)};
+  }
+
+  const to_pixels = ([x, y]) => [WIDTH / 2 + (x - frame.middle[0]) * frame.scale, HEIGHT / 2 - (y - frame.middle[1]) * frame.scale];
+  const text_of = (points) => points.map((p) => to_pixels(p).map((x) => x.toFixed(1)).join(',')).join(' ');
+
+  function arrow(from, to, attributes) {
+    const [dx, dy] = [to[0] - from[0], to[1] - from[1]], length = Math.hypot(dx, dy);
+    if (length < 2) return element('g');
+    const head = Math.min(7, length / 2), [ex, ey] = [dx / length, dy / length];
+    const back = [to[0] - head * ex, to[1] - head * ey], wide = head / 2;
+    const path = `M${from.map((x) => x.toFixed(1))}L${back.map((x) => x.toFixed(1))}M${to.map((x) => x.toFixed(1))}` +
+        `L${(back[0] - wide * ey).toFixed(1)},${(back[1] + wide * ex).toFixed(1)}L${(back[0] + wide * ey).toFixed(1)},${(back[1] - wide * ex).toFixed(1)}Z`;
+    return element('path', {d: path, ...attributes});
+  }
+
+  /** A mark of a state, as in the report. */
+  function mark(state, [x, y], size = 1) {
+    if (state === 'stick') return element('rect', {x: x - 3.5 * size, y: y - 3.5 * size, width: 7 * size, height: 7 * size, class: 'state stick'});
+    if (state === 'slip') return element('path', {d: `M${x},${y - 5 * size}L${x + 4.5 * size},${y + 3 * size}L${x - 4.5 * size},${y + 3 * size}Z`, class: 'state slip'});
+    return element('circle', {cx: x, cy: y, r: 3 * size, class: 'state ' + state});
+  }
+
+  /** Hatched lines of an obstacle, on its solid side. */
+  function draw_obstacle(obstacle) {
+    const group = element('g', {class: 'obstacle'});
+    const edge = (from, to) => {  // solid on the right of the way
+      const a = to_pixels(from), b = to_pixels(to), length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+      const e = [(b[0] - a[0]) / length, (b[1] - a[1]) / length], into = [-e[1], e[0]];
+      let hatch = '';
+      for (let s = 4; s < length; s += 9)
+        hatch += `M${(a[0] + s * e[0]).toFixed(1)},${(a[1] + s * e[1]).toFixed(1)}l${(7 * (into[0] - 0.7 * e[0])).toFixed(1)},${(7 * (into[1] - 0.7 * e[1])).toFixed(1)}`;
+      group.append(element('path', {d: hatch, class: 'hatch'}), element('path', {d: `M${a}L${b}`}));
+    };
+    const [kind, shape] = Object.entries(obstacle)[0], place = (p) => carried(shape.moved, p);
+    if (kind === 'plane') {
+      const p = place(shape.point), n = shape.normal, far = 2 * (WIDTH + HEIGHT) / frame.scale, length = Math.hypot(...n);
+      const along = [n[1] / length * far, -n[0] / length * far];
+      const p0 = [p[0] - along[0], p[1] - along[1]], p1 = plus(p, along);
+      edge(p0, p1);
+    } else if (kind === 'circle') {
+      const [x, y] = to_pixels(place(shape.center));
+      group.append(element('circle', {cx: x, cy: y, r: shape.radius * frame.scale, class: shape.inside ? 'cup' : 'solid'}));
+    } else if (kind === 'polyline') {
+      const points = shape.points.map(place);
+      for (let i = 0; i + 1 < points.length; ++i) edge(points[i], points[i + 1]);
+    }
+    return group;
+  }
+
+  function draw_spring(from, to) {
+    const a = to_pixels(from), b = to_pixels(to), length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+    if (length < 1) return element('g');
+    const e = [(b[0] - a[0]) / length, (b[1] - a[1]) / length], n = [-e[1], e[0]];
+    let path = `M${a}`;
+    for (let i = 1; i < 14; ++i) {
+      const s = length * (0.12 + 0.76 * (i - 1) / 12), w = i === 1 || i === 13 ? 0 : i % 2 ? 6 : -6;
+      path += `L${(a[0] + s * e[0] + w * n[0]).toFixed(1)},${(a[1] + s * e[1] + w * n[1]).toFixed(1)}`;
+    }
+    return element('path', {d: path + `L${b}`, class: 'spring'});
+  }
+
+  function draw_bodies(picture, places) {
+    const group = element('g', {class: 'bodies'}), most = Math.max(...picture.von_mises.map((s) => s ?? 0));
+    const paths = new Map();
+    picture.elements.forEach((nodes, e) => {
+      const corners = {8: 4, 6: 3}[nodes.length] ?? nodes.length, at = nodes.slice(0, corners).map((n) => places[n]);
+      if (corners === 2) {
+        const same = picture.points[nodes[0]].every((x, k) => x === picture.points[nodes[1]][k]);
+        if (!same) { group.append(element('polyline', {points: text_of(at), class: 'bar'})); return; }
+        group.append(draw_spring(at[0], at[1]));
+        const [ax, ay] = to_pixels(at[1]), [x, y] = to_pixels(at[0]);
+        group.append(element('circle', {cx: ax, cy: ay, r: 4, class: 'anchor'}),
+                     element('rect', {x: x - 13, y: y - 13, width: 26, height: 26, rx: 3, class: 'mass'}));
+        return;
+      }
+      const shade = most > 0 ? SHADES[Math.min(SHADES.length - 1, Math.floor(SHADES.length * picture.von_mises[e] / most))] : SHADES[0];
+      paths.set(shade, (paths.get(shade) ?? '') + 'M' + at.map((p) => to_pixels(p).map((x) => x.toFixed(1)).join(',')).join('L') + 'Z');
+    });
+    for (const [shade, d] of paths) group.append(element('path', {d, fill: shade, class: 'elements'}));
+    return group;
+  }
+
+  /** A place that a control moves: dragged by the pointer, or moved by the arrow keys. */
+  function handle(drag, scene, picture, places, on_move) {
+    const control = scene.controls[drag.control], length = 46;
+    const span = Math.max(Math.abs(control.from), Math.abs(control.to)) || 1;
+    let base = null, tip = null, per_pixel = 0;
+    const direction = drag.axis === 0 ? [1, 0] : [0, -1];
+    if (drag.kind === 'force') {
+      base = to_pixels(places[drag.node]);
+      const reach = drag.sign * (14 + length * Math.abs(control.value) / span) * (control.value < 0 ? -1 : 1);
+      tip = [base[0] + direction[0] * reach, base[1] + direction[1] * reach];
+      per_pixel = drag.sign * span / length;
+    } else {
+      const place = drag.kind === 'node' ? places[drag.node] : [...drag.place];
+      if (drag.kind === 'obstacle') place[drag.axis] = control.value;
+      tip = to_pixels(place);
+      per_pixel = 1 / frame.scale;
+    }
+    const group = element('g', {class: 'handle ' + drag.kind, tabindex: 0, role: 'slider', 'aria-valuemin': control.from,
+                                'aria-valuemax': control.to, 'aria-valuenow': control.value,
+                                'aria-label': Words.say('drag', {name: Panel.name_of(scene, control)})});
+    if (base) group.append(arrow(base, tip, {class: 'force'}));
+    group.append(element('circle', {cx: tip[0], cy: tip[1], r: 16, class: 'reach'}), element('circle', {cx: tip[0], cy: tip[1], r: 7, class: 'grip'}));
+    const set = (value) => {
+      const stepped = Math.round((value - control.from) / control.step) * control.step + control.from;
+      on_move(control, +Math.min(control.to, Math.max(control.from, stepped)).toPrecision(12));
+    };
+    group.addEventListener('pointerdown', (event) => {
+      event.preventDefault();
+      moving = {control: control.name, set, start: control.value, x: event.clientX, y: event.clientY, per_pixel, direction};
+    });
+    group.addEventListener('keydown', (event) => {
+      const steps = {ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10}[event.key];
+      if (!steps) return;
+      event.preventDefault();
+      set(control.value + steps * control.step);
+      [...document.querySelectorAll('.handle')].find((one) => one.dataset.control === control.name)?.focus();
+    });
+    group.dataset.control = control.name;
+    return group;
+  }
+
+  addEventListener('pointermove', (event) => {
+    if (!moving) return;
+    const box = document.querySelector('#picture svg')?.getBoundingClientRect();
+    const ratio = box ? WIDTH / box.width : 1;
+    const way = ((event.clientX - moving.x) * moving.direction[0] + (event.clientY - moving.y) * moving.direction[1]) * ratio;
+    moving.set(moving.start + way * moving.per_pixel);
+  });
+  for (const end of ['pointerup', 'pointercancel']) addEventListener(end, () => { moving = null; });
+
+  /** Draws a scene into a place. `picture`: of the answer; `step`: which of its frames. */
+  function draw(place, scene, whole, step, words, on_move) {
+    const picture = at_step(whole, step);
+    if (!frame || frame.scene !== scene) frame = {...make_frame(whole, scene.lesson?.window), scene};
+    frame.strongest = Math.max(frame.strongest, ...(picture.traction ?? []).map((t) => Math.hypot(t[0], t[1])));
+    frame.times = magnification(whole);
+    const places = picture.points.map((x, n) => [x[0] + frame.times * picture.displacement[n][0], x[1] + frame.times * picture.displacement[n][1]]);
+    const focused = document.activeElement?.closest('.handle')?.dataset.control;
+    const svg = element('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'group', 'aria-label': words});
+    const drawing = element('g', {'aria-hidden': 'true'});
+    for (const obstacle of picture.obstacles) drawing.append(draw_obstacle(obstacle));
+    drawing.append(draw_bodies(picture, places));
+    const longest = 70, arrows = element('g', {class: 'tractions'}), marks = element('g');
+    const visible = picture.contact.map((c) => to_pixels(places[c.node]));
+    const close = visible.length > 1 ? Math.min(1, Math.max(0.45, median(visible.slice(1).map((p, i) => Math.hypot(p[0] - visible[i][0], p[1] - visible[i][1]))) / 9)) : 1.3;
+    picture.contact.forEach((c, p) => {
+      const t = picture.traction?.[p], at = visible[p];
+      if (t && frame.strongest > 0) {
+        const factor = longest / frame.strongest;
+        arrows.append(arrow([at[0] - factor * t[0], at[1] + factor * t[1]], at, {class: 'traction'}));
+      }
+      marks.append(mark(c.state, at, close));
+    });
+    drawing.append(arrows, marks);
+    svg.append(drawing);
+    for (const drag of scene.lesson?.drags ?? []) svg.append(handle(drag, scene, picture, places, on_move));
+    place.replaceChildren(svg);
+    if (focused) place.querySelector(`[data-control="${focused}"]`)?.focus({preventScroll: true});
+    return frame.times;
+  }
+
+  const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
+
+  /** What the marks mean. */
+  function legend(place) {
+    place.replaceChildren();
+    const names = Words.say('legend').split('|');
+    STATES.forEach((state, i) => {
+      const svg = element('svg', {width: 12, height: 12, 'aria-hidden': 'true'});
+      svg.append(mark(state, [6, 6]));
+      place.append(svg, ' ' + names[i] + '  ');
+    });
+    const svg = element('svg', {width: 26, height: 12, 'aria-hidden': 'true'});
+    svg.append(arrow([1, 6], [25, 6], {class: 'traction'}));
+    place.append(svg, ' ' + names[4]);
+  }
+
+  return {draw, legend, element, arrow};
+})();

@@ -1,0 +1,100 @@
+'use strict';
+/** A scene with its controls: what a slider changes, and what it is called after --set. */
+const Scenes = (() => {
+  const shipped = JSON.parse(document.getElementById('scenes').textContent);  // path: text
+  const METHODS = ['penalty', 'uzawa_al', 'monolithic_al'];
+  const knob_of = (method) => `/method/${method}/${method === 'penalty' ? 'stiffness' : 'scale'}`;
+
+  /** The value at a pointer of a document. */
+  const at = (document, pointer) => pointer.split('/').slice(1).reduce(
+      (value, key) => value?.[key.replaceAll('~1', '/').replaceAll('~0', '~')], document);
+  const escaped = (key) => key.replaceAll('~', '~0').replaceAll('/', '~1');
+
+  /** Without the digits that rounding leaves: a control's numbers have few. */
+  const short = (x) => +x.toPrecision(12);
+
+  /** Controls of any scene: friction of all contacts, all loads or motions together, the steps. */
+  function controls_of(document) {
+    const controls = {};
+    const friction = {};
+    for (const [name, contact] of Object.entries(document.contacts ?? {})) {
+      const base = `/contacts/${escaped(name)}/friction`, law = contact.friction;
+      if (typeof law === 'number') friction[base] = law;
+      else if (typeof law?.coulomb === 'number') friction[base + '/coulomb'] = law.coulomb;
+    }
+    const first = Object.values(friction).find((value) => value > 0);
+    if (first) {
+      const pointers = Object.fromEntries(Object.entries(friction).map(([pointer, value]) => [pointer, value / first]));
+      controls.friction = {pointers, from: 0, to: Math.max(1, short(2 * first)), step: 0.01};
+    }
+    const loads = {}, add = (pointer, value) => {
+      if (typeof value === 'number') { if (value !== 0) loads[pointer] = value; }
+      else if (Array.isArray(value)) value.forEach((part, i) => add(`${pointer}/${i}`, part));
+    };
+    (document.loads ?? []).forEach((load, i) => {
+      for (const kind of ['force', 'traction', 'pressure', 'body_force']) add(`/loads/${i}/${kind}`, load[kind]);
+    });
+    if (!Object.keys(loads).length)
+      (document.supports ?? []).forEach((support, i) => {
+        for (const [axis, value] of Object.entries(support.move ?? {}))
+          if (Array.isArray(value)) value.forEach((row, k) => add(`/supports/${i}/move/${axis}/${k}/1`, row[1]));
+      });
+    if (Object.keys(loads).length) controls.load = {pointers: loads, from: 0, to: 2, step: 0.02, factor: true};
+    const time = document.time ?? {};
+    if (Number.isInteger(time.steps)) controls.steps = {pointers: {'/time/steps': 1}, from: 1, to: Math.max(20, 2 * time.steps), step: 1};
+    else if (Array.isArray(time.legs) && !time.control) {
+      const least = Math.min(...time.legs.map((leg) => leg[1]));
+      const pointers = Object.fromEntries(time.legs.map((leg, i) => [`/time/legs/${i}/1`, leg[1] / least]));
+      controls.steps = {pointers, from: 1, to: Math.max(10, 2 * least), step: 1};
+    }
+    return controls;
+  }
+
+  /** A scene that is ready: `source` {path, text, edited}, `lesson`: its entry of lessons.json, `document`: as read. */
+  function make(source, lesson, document) {
+    const controls = {};
+    for (const [name, given] of Object.entries(lesson?.controls ?? controls_of(document))) {
+      const control = controls[name] = {name, ...given};
+      if (control.choices) {
+        control.value = control.initial = 0;
+      } else {
+        const [[pointer, weight]] = Object.entries(control.pointers);
+        control.value = control.initial = short(at(document, pointer) / weight);
+        control.to = Math.max(control.to, control.value);
+        control.from = Math.min(control.from, control.value);
+      }
+    }
+    for (const [name, value] of Object.entries(lesson?.set ?? {})) controls[name].value = value;
+    return {source, lesson, document, controls, knob: lesson?.knob?.value ?? null, knob_range: [lesson?.knob?.from ?? -3, lesson?.knob?.to ?? 8]};
+  }
+
+  /** "POINTER=VALUE" of every control that was moved. `more`: {pointer: value} on top. */
+  function overrides(scene, more = {}) {
+    const values = {};
+    for (const override of scene.lesson?.overrides ?? []) {
+      const cut = override.indexOf('=');
+      values[override.slice(0, cut)] = override.slice(cut + 1);
+    }
+    for (const control of Object.values(scene.controls)) {
+      if (control.value === control.initial) continue;
+      if (control.choices)
+        for (const [pointer, value] of Object.entries(control.choices[control.value])) values[pointer] = JSON.stringify(value);
+      else
+        for (const [pointer, weight] of Object.entries(control.pointers)) {
+          const value = control.value * weight;
+          values[pointer] = control.name === 'steps' ? Math.max(1, Math.round(value)) : short(value);
+        }
+    }
+    Object.assign(values, more);
+    return Object.entries(values).map(([pointer, value]) => `${pointer}=${value}`);
+  }
+
+  /** The stiffness or scale of a method; none where it is automatic. */
+  const knob = (scene, method, power = scene.knob) =>
+      power === null ? [] : [`${knob_of(method)}=${Number((10 ** power).toPrecision(3))}`];
+
+  /** How many values a solution has over all steps: what a browser bears is measured by it. */
+  const load_of = (size) => size.displacements * Math.max(1, size.steps) + 200 * size.contact_points * Math.max(1, size.steps);
+
+  return {shipped, METHODS, at, make, overrides, knob, knob_of, load_of, most: 600000};
+})();
