@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# install_dependencies.sh [test|python]: installs what is missing of the Debian (12 or later) packages that the build
-# needs, with `test` those of the tests, with `python` those of the Python module and its notebook.
-# STICKSLIP_NO_APT=1 installs nothing.
+# install_dependencies.sh [test|python|web]: installs what is missing of the Debian (12 or later) packages that the build
+# needs, with `test` those of the tests, with `python` those of the Python module and its notebook, with `web` those of
+# the page for learners alone. STICKSLIP_NO_APT=1 installs nothing.
 set -euo pipefail
 
 # libopenblas0-serial is named because SuiteSparse would else bring the reference BLAS, which is 3 to 6 times slower;
@@ -14,7 +14,8 @@ case "${1:-}" in
     librsvg2-bin fonts-liberation python3-numpy python3-scipy pybind11-dev python3-dev python3-nlopt) ;;
   python) packages+=(pybind11-dev python3-dev python3-pip python3-setuptools python3-wheel python3-venv python3-numpy
     python3-pandas python3-matplotlib python3-nlopt jupyter-nbconvert python3-ipykernel) ;;
-  *) echo "usage: $0 [test|python]" >&2; exit 2 ;;
+  web) packages=(cmake ninja-build libeigen3-dev nlohmann-json3-dev libfmt-dev emscripten) ;;
+  *) echo "usage: $0 [test|python|web]" >&2; exit 2 ;;
 esac
 
 if [ "${STICKSLIP_NO_APT:-0}" = 1 ]; then

@@ -30,7 +30,7 @@ const Charts = (() => {
   const kind = (name) => [{filter: `datum.kind === '${name}'`}];
 
   function cost(titles) {
-    const x = {field: 'x', type: 'quantitative', title: titles.x, scale: {type: 'log', nice: false, padding: 24}, axis: axis(titles.x)};
+    const x = {field: 'x', type: 'quantitative', title: titles.x, scale: {type: 'log', nice: false, padding: 70}, axis: axis(titles.x)};
     const y = {field: 'y', type: 'quantitative', scale: {type: 'log', domain: [GROUND, 10], nice: false, clamp: true},
                axis: {...axis(titles.y), values: [GROUND, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1],
                       labelExpr: `datum.value <= ${2 * GROUND} ? '${say('chart.zero')}' : powered(datum.value)`}};

@@ -38,10 +38,10 @@ const Editor = (() => {
     return faults.length === 0 && Boolean(size) && bears(size);
   }
 
-  /** Reads a text by the program's reader; `name`: what messages call it. */
-  async function check(text, name) {
-    if (Solver.age('check') > 2) Solver.stop('check');
-    const got = await Solver.ask('check', 'check', {scene: text, file: name, solve: false});
+  /** Reads a text by the program's reader, in a worker; `name`: what messages call it. */
+  async function check(text, name, worker = 'check') {
+    if (Solver.age(worker) > 2) Solver.stop(worker);
+    const got = await Solver.ask(worker, 'check', {scene: text, file: name, solve: false});
     return got?.answer ?? null;
   }
 

@@ -103,7 +103,14 @@ const Page = (() => {
     if (!Number.isFinite(value)) return {words: say('no-number')};
     if (!Number.isFinite(right)) return {words: say('no-reference')};
     const step = last_step(answer);
-    if (shown.derivative && Derivative.read(step, shown.response, shown.parameter).sides) return {words: say('not-compared')};
+    if (shown.derivative) {
+      const [sides, true_sides] = [step, last_step(reference.answer)].map((one) => Derivative.read(one, shown.response, shown.parameter).sides);
+      if (sides && true_sides) {
+        const most = Math.max(...true_sides.map(Math.abs)), error = Math.max(...sides.map((side, i) => Math.abs(side - true_sides[i]))) / most;
+        return {error, words: numeral(error, 2)};
+      }
+      if (sides || true_sides) return {words: say('not-compared')};
+    }
     let size = Math.abs(right);
     if (size === 0) {
       size = answer.scales?.[shown.response] ?? 0;
@@ -142,12 +149,13 @@ const Page = (() => {
       const rows = [];
       if (shown.derivative) {
         const {value, sides} = Derivative.read(step, shown.response, shown.parameter);
-        rows.push([say('derivative'), sides ? say('sides', {below: numeral(sides[0]), above: numeral(sides[1])}) : numeral(value), 'value']);
+        if (sides) rows.push([say('below'), numeral(sides[0]), 'value'], [say('above'), numeral(sides[1]), 'value']);
+        else rows.push([say('derivative'), numeral(value), 'value']);
         const low = judged_response(less), high = judged_response(more);
         const difference = less && of === shown.parameter ? (high - low) / (2 * Derivative.step_of(answer.document, of, scene.lesson?.difference).step) : NaN;
         rows.push([say('difference'), less && of === shown.parameter ? numeral(difference) : '…', 'difference']);
       } else {
-        rows.push([say('answer'), is_good ? numeral(step.responses[shown.response], 10) : say('failed-at', {time: numeral(steps.at(-1)?.time ?? 0, 4)}), 'value']);
+        rows.push([say('answer'), is_good ? numeral(step.responses[shown.response], 7) : say('failed-at', {time: numeral(steps.at(-1)?.time ?? 0, 4)}), 'value']);
       }
       rows.push([say('error'), reference.answer ? error_of(answer).words : '…', 'error'],
                 [say('newton'), numeral(cost.counts.newton), 'newton']);
@@ -371,7 +379,7 @@ const Page = (() => {
 
   /** Shows a scene: reads it, makes its controls, solves. `given`: of the address. */
   async function open(source, lesson, given = {}) {
-    const answer = await Editor.check(source.text, source.path.split('/').at(-1));
+    const answer = await Editor.check(source.text, source.path.split('/').at(-1), source.edited ? 'check' : 'monolithic_al');
     if (!answer) return;
     if (!answer.document || !Editor.bears(answer.size)) {
       Editor.set(source.text);
@@ -469,6 +477,7 @@ const Page = (() => {
     open_address();
   }
 
+  Solver.warm(...METHODS);
   addEventListener('DOMContentLoaded', start);
   return {open_lesson};
 })();

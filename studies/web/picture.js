@@ -1,7 +1,7 @@
 'use strict';
 /** The scene as a drawing: bodies, obstacles, contact points with their states and tractions, and handles. */
 const Picture = (() => {
-  const NS = 'http://www.w3.org/2000/svg', WIDTH = 560, HEIGHT = 300, MARGIN = 26;
+  const NS = 'http://www.w3.org/2000/svg', WIDTH = 560, HEIGHT = 300, MARGIN = 26, MASS = 13;  // half a mass
   const STATES = ['stick', 'slip', 'closed', 'open'];
   const SHADES = ['#f4f1de', '#d9e4a8', '#a8d483', '#6cbf80', '#3ba387', '#2a848c', '#31648c', '#3d4287', '#43176a'];  // the report's
   let frame = null;  // {window, scale, ...} of the scene that is shown
@@ -120,8 +120,8 @@ const Picture = (() => {
     return group;
   }
 
-  function draw_spring(from, to) {
-    const a = to_pixels(from), b = to_pixels(to), length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+  function draw_spring(a, b) {
+    const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
     if (length < 1) return element('g');
     const e = [(b[0] - a[0]) / length, (b[1] - a[1]) / length], n = [-e[1], e[0]];
     let path = `M${a}`;
@@ -132,7 +132,19 @@ const Picture = (() => {
     return element('path', {d: path + `L${b}`, class: 'spring'});
   }
 
-  function draw_bodies(picture, places) {
+  /** By how many pixels a mass is drawn off its node, {node: [x, y]}: it stands beside the plane that it touches. */
+  function stands_of(scene, picture) {
+    const stands = {};
+    for (const point of picture.contact) {
+      const master = scene.document.contacts[point.name]?.master, plane = scene.document.obstacles?.[master]?.plane;
+      if (!plane || plane.normal.length > 2) continue;
+      const length = Math.hypot(...plane.normal);
+      stands[point.node] = [MASS * plane.normal[0] / length, -MASS * plane.normal[1] / length];
+    }
+    return stands;
+  }
+
+  function draw_bodies(picture, places, stands) {
     const group = element('g', {class: 'bodies'}), most = Math.max(...picture.von_mises.map((s) => s ?? 0));
     const paths = new Map();
     picture.elements.forEach((nodes, e) => {
@@ -140,10 +152,10 @@ const Picture = (() => {
       if (corners === 2) {
         const same = picture.points[nodes[0]].every((x, k) => x === picture.points[nodes[1]][k]);
         if (!same) { group.append(element('polyline', {points: text_of(at), class: 'bar'})); return; }
-        group.append(draw_spring(at[0], at[1]));
-        const [ax, ay] = to_pixels(at[1]), [x, y] = to_pixels(at[0]);
+        group.append(draw_spring(plus(to_pixels(at[0]), stands[nodes[0]] ?? [0, 0]), plus(to_pixels(at[1]), stands[nodes[0]] ?? [0, 0])));
+        const [ax, ay] = plus(to_pixels(at[1]), stands[nodes[0]] ?? [0, 0]), [x, y] = plus(to_pixels(at[0]), stands[nodes[0]] ?? [0, 0]);
         group.append(element('circle', {cx: ax, cy: ay, r: 4, class: 'anchor'}),
-                     element('rect', {x: x - 13, y: y - 13, width: 26, height: 26, rx: 3, class: 'mass'}));
+                     element('rect', {x: x - MASS, y: y - MASS, width: 2 * MASS, height: 2 * MASS, rx: 3, class: 'mass'}));
         return;
       }
       const shade = most > 0 ? SHADES[Math.min(SHADES.length - 1, Math.floor(SHADES.length * picture.von_mises[e] / most))] : SHADES[0];
@@ -154,26 +166,28 @@ const Picture = (() => {
   }
 
   /** A place that a control moves: dragged by the pointer, or moved by the arrow keys. */
-  function handle(drag, scene, picture, places, on_move) {
+  function handle(drag, scene, places, stands, on_move) {
     const control = scene.controls[drag.control], length = 46;
     const span = Math.max(Math.abs(control.from), Math.abs(control.to)) || 1;
     let base = null, tip = null, per_pixel = 0;
     const direction = drag.axis === 0 ? [1, 0] : [0, -1];
     if (drag.kind === 'force') {
-      base = to_pixels(places[drag.node]);
-      const reach = drag.sign * (14 + length * Math.abs(control.value) / span) * (control.value < 0 ? -1 : 1);
-      tip = [base[0] + direction[0] * reach, base[1] + direction[1] * reach];
-      per_pixel = drag.sign * span / length;
+      const mass = plus(to_pixels(places[drag.node]), stands[drag.node] ?? [0, 0]), side = drag.push ? -drag.sign : drag.sign;
+      const along = (way) => [mass[0] + direction[0] * side * way, mass[1] + direction[1] * side * way];
+      base = along(MASS);
+      tip = along(MASS + 8 + length * Math.abs(control.value) / span);  // where the hand is: behind a push, before a pull
+      per_pixel = side * span / length;
     } else {
       const place = drag.kind === 'node' ? places[drag.node] : [...drag.place];
       if (drag.kind === 'obstacle') place[drag.axis] = control.value;
-      tip = to_pixels(place);
+      tip = plus(to_pixels(place), drag.kind === 'node' ? stands[drag.of ?? drag.node] ?? [0, 0] : [0, 0]);
       per_pixel = 1 / frame.scale;
     }
     const group = element('g', {class: 'handle ' + drag.kind, tabindex: 0, role: 'slider', 'aria-valuemin': control.from,
                                 'aria-valuemax': control.to, 'aria-valuenow': control.value,
                                 'aria-label': Words.say('drag', {name: Panel.name_of(scene, control)})});
-    if (base) group.append(arrow(base, tip, {class: 'force'}));
+    if (base) group.append(drag.push ? arrow(tip, base, {class: 'force'}) : arrow(base, tip, {class: 'force'}));
+    if (base && !drag.push) tip = plus(tip, [8 * Math.sign(tip[0] - base[0]), 8 * Math.sign(tip[1] - base[1])]);
     group.append(element('circle', {cx: tip[0], cy: tip[1], r: 16, class: 'reach'}), element('circle', {cx: tip[0], cy: tip[1], r: 7, class: 'grip'}));
     const set = (value) => {
       const stepped = Math.round((value - control.from) / control.step) * control.step + control.from;
@@ -214,7 +228,8 @@ const Picture = (() => {
     const svg = element('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'group', 'aria-label': words});
     const drawing = element('g', {'aria-hidden': 'true'});
     for (const obstacle of picture.obstacles) drawing.append(draw_obstacle(obstacle));
-    drawing.append(draw_bodies(picture, places));
+    const stands = lumped(picture) ? stands_of(scene, picture) : {};
+    drawing.append(draw_bodies(picture, places, stands));
     const longest = 70, arrows = element('g', {class: 'tractions'}), marks = element('g');
     const visible = picture.contact.map((c) => to_pixels(places[c.node]));
     const close = visible.length > 1 ? Math.min(1, Math.max(0.45, median(visible.slice(1).map((p, i) => Math.hypot(p[0] - visible[i][0], p[1] - visible[i][1]))) / 9)) : 1.3;
@@ -228,7 +243,7 @@ const Picture = (() => {
     });
     drawing.append(arrows, marks);
     svg.append(drawing);
-    for (const drag of scene.lesson?.drags ?? []) svg.append(handle(drag, scene, picture, places, on_move));
+    for (const drag of scene.lesson?.drags ?? []) svg.append(handle(drag, scene, places, stands, on_move));
     place.replaceChildren(svg);
     if (focused) place.querySelector(`[data-control="${focused}"]`)?.focus({preventScroll: true});
     return frame.times;

@@ -79,5 +79,8 @@ const Solver = (() => {
     for (const each of workers.keys()) stop(each);
   }
 
-  return {ask, stop, age, busy, add_file};
+  /** Starts workers before there is a request for them. */
+  const warm = (...names) => { for (const name of names) start(name); };
+
+  return {ask, stop, age, busy, add_file, warm};
 })();
