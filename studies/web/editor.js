@@ -6,8 +6,9 @@ const Editor = (() => {
   let timer = 0, last = null;
 
   /** Whether a browser should solve a scene of this size. */
-  const bears = (size) => Scenes.load_of(size) <= Scenes.most;
-  const too_large = (size) => say('editor.too-large', {...size, limit: Scenes.most.toLocaleString('en')});
+  const bears = (size) => size.displacements <= Scenes.MOST.displacements && Scenes.length_of(size) <= Scenes.MOST.length;
+  const too_large = (size) => say('editor.too-large', {...size, ...Object.fromEntries(
+      Object.entries({most: Scenes.MOST.displacements, most_over_steps: Scenes.MOST.length}).map(([key, value]) => [key, numeral(value)]))});
 
   function select(line, column) {
     const text = byId('text'), lines = text.value.split('\n');

@@ -388,7 +388,7 @@ const Page = (() => {
       return;
     }
     scene = Scenes.make(source, lesson, answer.document);
-    scene.every = Scenes.load_of(answer.size) <= 30000 ? 1 : 0;
+    scene.every = Scenes.length_of(answer.size) <= 30000 ? 1 : 0;
     const number = (text) => Number.isFinite(Number(text)) ? Number(text) : null;
     if (given.knob !== undefined) scene.knob = number(given.knob);
     for (const control of Object.values(scene.controls)) {
@@ -413,7 +413,6 @@ const Page = (() => {
     byId('scene-title').textContent = answer.document.title ?? source.path;
     document.body.classList.toggle('unanswered', !answered);
     Lessons.draw(lesson, answered, () => { answered = true; document.body.classList.remove('unanswered'); show(); after_change(); });
-    if (!Editor.bears(answer.size)) return;
     Editor.set(source.text);
     byId('arrow').hidden = true;
     byId('picture').replaceChildren();

@@ -10,6 +10,7 @@ const Words = (() => {
   /** A number: a power of ten below 0.001 and from 10000 on, as in the report. */
   function numeral(x, digits = 6) {
     if (!Number.isFinite(x)) return say('no-number');
+    if (Number.isInteger(x) && Math.abs(x) < 1e7 && digits >= 6) return String(x).replace('-', '−');
     if (x === 0 || (Math.abs(x) >= 1e-3 && Math.abs(x) < 1e4)) return String(+x.toPrecision(digits)).replace('-', '−');
     const [mantissa, power] = x.toExponential(digits - 1).split('e');
     const factor = String(+mantissa).replace('-', '−');

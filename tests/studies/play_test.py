@@ -1,0 +1,259 @@
+#!/usr/bin/env python3
+"""play_test.py STICKSLIP SOURCE FOLDER [--times]: the page in FOLDER (the preset wasm) as a learner uses it, in Chromium,
+offline: sliders, a prediction, derivatives, a scene with a fault, a run that is stopped, a link, a phone, dark, paper.
+The numbers on the page are those of the program. --times prints how fast the page answers. Exit code 77, which ctest
+counts as skipped, where there is no page or no Chromium."""
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from page_test import BROWSERS, SKIPPED, Browser, check
+
+METHODS = ("penalty", "uzawa_al", "monolithic_al")
+WAIT = """
+  const value = (method, name) => document.querySelector(`.column[data-method="${method}"] dd[data-value="${name}"]`)?.textContent;
+  const methods = ['penalty', 'uzawa_al', 'monolithic_al'];
+  const settled = () => until(() => methods.every((method) => value(method, 'error') && value(method, 'error') !== '…'));
+  const columns = () => Object.fromEntries(methods.map((method) => [method, Object.fromEntries(all(
+      `.column[data-method="${method}"] dd`).map((place) => [place.dataset.value, place.textContent]))]));
+  const slide = (name, to) => {
+    const input = document.getElementById('control-' + name);
+    input.value = to;
+    input.dispatchEvent(new Event('input', {bubbles: true}));
+  };
+  const commands = async () => { await pause(900); return document.getElementById('commands').textContent.split('\\n'); };
+  const click = (selector) => document.querySelector(selector).click();
+"""
+SLIDE = WAIT + """
+  await settled();
+  const before = value('penalty', 'value');
+  slide('friction', 0.45);
+  slide('load', 12);
+  slide('knob', 3);
+  const changed = await until(() => value('penalty', 'value') !== before);
+  await pause(700);
+  await settled();
+  return {changed, columns: columns(), commands: await commands(), live: document.getElementById('live').textContent};
+"""
+PREDICT = WAIT + """
+  await until(() => methods.every((method) => value(method, 'error')));
+  const hidden = getComputedStyle(document.querySelector('.column dl')).visibility;
+  const waits = document.querySelector('#prediction .show').disabled;
+  all('#prediction input')[0].click();
+  click('#prediction .show');
+  await settled();
+  return {hidden, waits, seen: getComputedStyle(document.querySelector('.column dl')).visibility,
+          words: document.getElementById('see').textContent};
+"""
+DERIVATIVE = WAIT + """
+  await settled();
+  click('[name="shown"][value="derivative"]');
+  await until(() => methods.every((method) => value(method, 'difference') && value(method, 'difference') !== '…'));
+  await until(() => document.querySelector('#arrow .slope'));
+  return {columns: columns(), arrow: document.getElementById('arrow').textContent, commands: await commands()};
+"""
+DRAG = WAIT + """
+  await settled();
+  const handle = () => document.querySelector('.handle[data-control="anchor"]'), at = seen(handle().querySelector('.grip'));
+  const point = (type, x) => new PointerEvent(type, {clientX: x, clientY: at.top + 5, bubbles: true});
+  const before = document.getElementById('control-anchor').value;
+  handle().dispatchEvent(point('pointerdown', at.left + 5));
+  dispatchEvent(point('pointermove', at.left + 45));
+  dispatchEvent(point('pointerup', at.left + 45));
+  const dragged = document.getElementById('control-anchor').value;
+  handle().focus();
+  handle().dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', bubbles: true}));
+  await pause(300);
+  return {before, dragged, keyed: document.getElementById('control-anchor').value, label: handle().getAttribute('aria-label'),
+          focus: document.activeElement === handle()};
+"""
+EDIT = WAIT + """
+  await settled();
+  click('#open-editor');
+  const text = document.getElementById('text'), whole = text.value, faults = () => document.getElementById('faults').textContent;
+  const type = (words) => { text.value = words; text.dispatchEvent(new Event('input', {bubbles: true})); };
+  type(whole.replace('"friction": 0.3', '"fricton": 0.3'));
+  await until(() => faults().includes('fricton'));
+  const told = faults(), off = document.getElementById('run').disabled;
+  document.querySelector('button.fault').click();
+  const at = text.value.slice(text.selectionStart, text.selectionStart + 9);
+  type(whole.replace('"friction": 0.3', '"friction": 0.2'));
+  await until(() => !document.getElementById('run').disabled);
+  click('#run');
+  await until(() => document.getElementById('lesson').value === '');
+  await settled();
+  await pause(900);
+  return {told, off, at, columns: columns(), hash: location.hash.length, commands: await commands()};
+"""
+TOO_LARGE = WAIT + """
+  await settled();
+  const text = document.getElementById('text');
+  click('#open-editor');
+  text.value = text.value.replace('"cells": [32, 32]', '"cells": [300, 300]');
+  text.dispatchEvent(new Event('input', {bubbles: true}));
+  await until(() => document.getElementById('faults').textContent.includes('more than a browser'));
+  return {words: document.getElementById('faults').textContent, off: document.getElementById('run').disabled};
+"""
+CANCEL = WAIT + """
+  await until(() => document.querySelector('.column .stop:not([hidden])'));
+  const words = document.querySelector('.column .progress').textContent;
+  let ticks = 0;
+  const timer = setInterval(() => ++ticks, 20);
+  await pause(1200);
+  clearInterval(timer);
+  for (const button of all('.column .stop:not([hidden])')) button.click();
+  const stopped = await until(() => all('.column .status').some((place) => place.textContent === 'stopped'));
+  return {words, ticks, stopped, later: document.querySelector('.column[data-method="uzawa_al"] .more').textContent};
+"""
+FORM = WAIT + """
+  await settled();
+  const drawing = await until(() => document.querySelector('#chart svg'));
+  await pause(300);
+  return {chart: drawing, beyond: document.documentElement.scrollWidth - innerWidth, high: document.documentElement.scrollHeight,
+          first: document.querySelector('#terminal').getBoundingClientRect().top, ink: getComputedStyle(document.body).color,
+          marks: all('#chart g.mark-symbol path').length};
+"""
+QUICK = WAIT + """
+  await settled();
+  await pause(500);
+  const times = [];
+  const [from, to] = [Number(document.getElementById('control-load').min), Number(document.getElementById('control-load').max)];
+  for (let i = 0; i < 12; ++i) {
+    const before = document.querySelector('#picture svg');
+    const start = performance.now();
+    slide('load', from + (to - from) * (0.4 + 0.02 * i));
+    await new Promise((done) => {
+      const look = () => document.querySelector('#picture svg') !== before ? done() : requestAnimationFrame(look);
+      look();
+    });
+    times.push(performance.now() - start);
+    await pause(250);
+  }
+  return times.sort((a, b) => a - b);
+"""
+FIRST = WAIT + "await until(() => methods.some((method) => value(method, 'value'))); return performance.now();"
+
+
+def number(text):
+    """A number as the page writes it: 2.8·10⁻¹⁵ of 2.8e-15."""
+    plain = text.replace("−", "-").translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-"))
+    if "10" in plain and ("·10" in plain or any(c in text for c in "⁰¹²³⁴⁵⁶⁷⁸⁹")):
+        factor, power = plain.rsplit("10", 1)
+        factor = factor.rstrip("·")
+        return float({"": "1", "-": "-1"}.get(factor, factor)) * 10 ** int(power)
+    return float(plain)
+
+
+def by_program(program, source, command):
+    """What a command of the page gives in a terminal."""
+    words = command.replace("'", "").split(" ")
+    done = subprocess.run([program, *words[1:], "--json"], capture_output=True, text=True, cwd=source)
+    return json.loads(done.stdout)
+
+
+def check_values(name, program, source, found, response, parameter=None):
+    """The columns hold what the commands below them compute."""
+    for method, command in zip(METHODS, found["commands"]):
+        result = by_program(program, source, command)
+        step, column = result["steps"][-1], found["columns"][method]
+        right = step["sensitivities"][response][parameter] if parameter else step["responses"][response]
+        check(f"{name}: {method}", math.isclose(number(column["value"]), right, rel_tol=2e-6, abs_tol=1e-12), [column, right, command])
+        counts = result["cost"]["counts"]
+        check(f"{name}: {method}, counts", [number(column["newton"]), number(column["factorizations"])] ==
+              [counts["newton"], counts["factorizations"]], [column, counts])
+
+
+def visit(browser, address, width=1280, height=720, scheme="light"):
+    browser.ask("Page.navigate", url="about:blank")
+    home, browser.page = browser.page, browser.page + address
+    browser.open(width, scheme)
+    browser.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+    browser.page = home
+
+
+def check_page(browser, program, source):
+    visit(browser, "")
+    found = browser.run(SLIDE)
+    check("sliders", found["changed"] and "Monolithic: pull 5.4" in found["live"], found)
+    check("sliders: commands", all("--set /contacts/sole/friction=0.45" in line for line in found["commands"]), found)
+    check_values("sliders", program, source, found, "pull")
+    found = browser.run(DERIVATIVE)
+    check_values("derivative", program, source, found, "pull", "mu")
+    for column in found["columns"].values():
+        check("two runs", math.isclose(number(column["value"]), number(column["difference"]), rel_tol=1e-4), column)
+    check("arrow", "A little more mu" in found["arrow"], found["arrow"])
+    visit(browser, "")
+    found = browser.run(DRAG)
+    check("drag", float(found["dragged"]) > float(found["before"]) > 0 and found["focus"] and
+          math.isclose(float(found["keyed"]), float(found["dragged"]) - 0.005), found)
+    visit(browser, "#lesson=loop")
+    found = browser.run(PREDICT)
+    check("prediction", found["hidden"] == "hidden" and found["waits"] and found["seen"] == "visible" and
+          found["words"].startswith("No: at 0.07."), found)
+    visit(browser, "")
+    found = browser.run(EDIT)
+    check("a fault", "scene.json:20:67: /contacts/sole/fricton: unknown key" in found["told"] and found["off"] and
+          found["at"].startswith("\""), found)
+    check("a scene of one's own", found["hash"] > 300 and all("scene.json" in line for line in found["commands"]), found)
+    found["commands"] = [f"stickslip run studies/scenes/slider.json -m {method} --set /contacts/sole/friction=0.2"
+                         for method in METHODS]
+    check_values("a scene of one's own", program, source, found, "friction")
+    visit(browser, "#file=studies/scenes/greco_plate.json")
+    found = browser.run(TOO_LARGE)
+    check("too large", found["off"] and "stickslip run scene.json" in found["words"], found)
+    visit(browser, "#file=studies/scenes/pinched_tube.json")
+    found = browser.run(CANCEL)
+    check("stop", found["stopped"] and found["ticks"] > 20 and ("Step" in found["words"] or "Solving" in found["words"]), found)
+    visit(browser, "#lesson=play&c.friction=0.5&knob=2&shown=derivative&by=mu&drawn=penalty")
+    found = browser.run(DERIVATIVE)
+    check("link", all("friction=0.5" in line for line in found["commands"]) and "stiffness=100" in found["commands"][0], found)
+
+
+def check_forms(browser):
+    visit(browser, "")
+    wide = browser.run(FORM)
+    check("first screen", wide["chart"] and wide["beyond"] <= 0 and wide["first"] <= 720 and wide["marks"] >= 3, wide)
+    visit(browser, "", 390, 844)
+    phone = browser.run(FORM)
+    check("a phone", phone["chart"] and phone["beyond"] <= 0, phone)
+    visit(browser, "", scheme="dark")
+    dark = browser.run(FORM)
+    check("dark", dark["ink"] != wide["ink"], dark)
+
+
+def show_times(browser, page):
+    import gzip
+    print(f"page: {page.stat().st_size / 1e6:.2f} MB, compressed {len(gzip.compress(page.read_bytes())) / 1e6:.2f} MB")
+    visit(browser, "")
+    print(f"first answer after {browser.run(FIRST):.0f} ms")
+    for lesson in ("play", "stiff", "newton", "cylinders", "corners", "klarbring", "held", "accuracy"):
+        visit(browser, "#lesson=" + lesson)
+        times = browser.run("await until(() => document.querySelector('.column dd')); document.querySelector('.skip-prediction')?.click();" + QUICK)
+        print(f"{lesson}: slider to picture {times[len(times) // 2]:.0f} ms (median), {times[-1]:.0f} ms (slowest)")
+
+
+def main():
+    program, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve()
+    page, chromium = folder / "stickslip.html", next(filter(None, map(shutil.which, BROWSERS)), None)
+    if not page.exists() or not chromium:
+        print("skipped: there is no page here (./play.sh), or no Chromium (Debian: apt install chromium)")
+        sys.exit(SKIPPED)
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = Browser(chromium, pathlib.Path(profile), page.as_uri())
+        browser.ask("Network.enable")
+        browser.ask("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
+        if "--times" in sys.argv:
+            show_times(browser, page)
+        else:
+            check_page(browser, program, source)
+            check_forms(browser)
+        browser.close()
+    print("the page works")
+
+
+if __name__ == "__main__":
+    main()
