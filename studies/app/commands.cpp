@@ -116,6 +116,7 @@ void write_picture(const std::filesystem::path& directory, const Simulation& sim
   if (picture.is_null()) return;
   picture["interface"] = interface_json(result);
   picture["film"] = film_json(result);
+  picture["scene"] = simulation.input.document;
   write_output(directory / "picture.json", json_text(picture));
   written.picture = file_bytes(directory, {"picture.json"});
   ++written.files;

@@ -21,6 +21,7 @@
 #include "studies/report/look_up.hpp"
 #include "studies/report/page.hpp"
 #include "studies/report/picture.hpp"
+#include "studies/report/play_link.hpp"
 #include "studies/report/records.hpp"
 #include "studies/report/run_page.hpp"
 #include "studies/report/sample.hpp"
@@ -189,7 +190,8 @@ void write_report(const std::filesystem::path& directory, Pdfs pdfs) try {
   const Study shown = sample_of(study);
   Figures figures;
   const std::string title = text_at(study.description, "title");
-  const std::string first = "<section id=\"verdict\">\n" + first_screen(study, shown, figures) + "</section>\n";
+  const std::string first = "<section id=\"verdict\">\n" + first_screen(study, shown, figures) +
+                            play_link(directory, study.picture) + "</section>\n";
   write_output(directory / "report.html",
                page(title.empty() ? "Frictional contact study" : title, first, sections_of(study, shown, figures)));
   write_figures(directory, figures.figures, figures.plates, pdfs);
@@ -202,7 +204,8 @@ void write_run_report(const std::filesystem::path& directory, Pdfs pdfs) try {
   const Study run = read_run(directory);
   Figures figures;
   const std::string title = text_at(run.description, "title");
-  const std::string first = "<section id=\"run\">\n" + first_of_run(run, figures) + "</section>\n";
+  const std::string first =
+      "<section id=\"run\">\n" + first_of_run(run, figures) + play_link(directory, run.picture) + "</section>\n";
   write_output(directory / "report.html",
                page(title.empty() ? "Frictional contact" : title, first, sections_of_run(run, figures)));
   write_figures(directory, figures.figures, figures.plates, pdfs);

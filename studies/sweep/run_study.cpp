@@ -183,6 +183,7 @@ json showcase_of(const Plan& plan, CellRunner& runner) {
   const auto breakdown = attempt([&] {
     const auto result = runner.showcase(plan.cells.size() - 1);
     out = {{"picture", picture_json(result)}, {"size", size_json(result)}, {"fields", json::object()}};
+    out["picture"]["scene"] = plan.cells.back().document.root();
     for_each_field(result, 0, [&](const std::string& name, const std::string& text) { out["fields"][name] = text; });
     if (!is_converged(result.status())) return;
     for (const auto& reference : plan.study.references)

@@ -2,11 +2,11 @@
 /** The chart below the columns: error against work, a response over the steps, tractions along the contact. */
 const Charts = (() => {
   const {say, numeral} = Words;
-  const COLORS = {penalty: '#D55E00', uzawa_al: '#0072B2', monolithic_al: '#009E73'};  // the report's
   const SHAPES = {penalty: 'circle', uzawa_al: 'square', monolithic_al: 'triangle-up'};
   const GROUND = 1e-18;  // where errors of exactly 0 stand
   const dark = matchMedia('(prefers-color-scheme: dark)');
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const colors = () => Object.fromEntries(Scenes.METHODS.map((method) => [method, css('--' + method)]));
   let view = null, key = '', library = null;
 
   /** The chart library, read when the first chart is drawn. */
@@ -34,7 +34,7 @@ const Charts = (() => {
     const y = {field: 'y', type: 'quantitative', scale: {type: 'log', domain: [GROUND, 10], nice: false, clamp: true},
                axis: {...axis(titles.y), values: [GROUND, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1],
                       labelExpr: `datum.value <= ${2 * GROUND} ? '${say('chart.zero')}' : powered(datum.value)`}};
-    const color = by_method('color', COLORS), shape = by_method('shape', SHAPES);
+    const color = by_method('color', colors()), shape = by_method('shape', SHAPES);
     const tooltip = [{field: 'name', title: say('lesson')}, {field: 'x', title: titles.x}, {field: 'y', title: titles.y}];
     return [
       {transform: kind('asked'), mark: {type: 'rule', strokeDash: [3, 3]}, encoding: {y}},
@@ -49,7 +49,7 @@ const Charts = (() => {
   function steps(titles) {
     const x = {field: 'x', type: 'quantitative', scale: {zero: false, nice: false, padding: 12}, axis: axis(titles.x)};
     const y = {field: 'y', type: 'quantitative', scale: {zero: false, padding: 12}, axis: axis(titles.y)};
-    const color = by_method('color', COLORS);
+    const color = by_method('color', colors());
     return [
       {transform: kind('line'), mark: {type: 'line', strokeWidth: 2}, encoding: {x, y, color, order: {field: 'order'}, detail: {field: 'method'}}},
       {transform: kind('line'), mark: {type: 'point', filled: false, size: 20}, encoding: {x, y, color, shape: by_method('shape', SHAPES)}},
@@ -97,5 +97,5 @@ const Charts = (() => {
 
   dark.addEventListener('change', () => { key = ''; });
 
-  return {draw, COLORS, GROUND};
+  return {draw, GROUND};
 })();

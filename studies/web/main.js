@@ -432,6 +432,7 @@ const Page = (() => {
   async function open_address() {
     const given = Link.read();
     if (given.scene) return open({path: 'scene.json', text: await Link.unpack(given.scene), edited: true}, null, given);
+    if (given.json) return open({path: 'scene.json', text: JSON.stringify(JSON.parse(given.json), null, 1), edited: true}, null, given);
     if (given.file && Scenes.shipped[given.file]) return open({path: given.file, text: Scenes.shipped[given.file], edited: false}, null, given);
     return open_lesson(given.lesson ?? 'play', given);
   }
