@@ -1,10 +1,10 @@
-// node build_page.mjs SOURCE MODULE.js MODULE.wasm VERSION.hpp PAGE.html
+// node build_page.mjs SOURCE MODULE.js MODULE.wasm VERSION.hpp LANGUAGE PAGE.html
 // Puts the page together: one file that holds the module, the scripts, the words, the scenes and the chart library.
 import {readFileSync, readdirSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {gzipSync} from 'node:zlib';
 
-const [source, glue, module, version_header, page] = process.argv.slice(2);
+const [source, glue, module, version_header, language, page] = process.argv.slice(2);
 const web = join(source, 'studies/web'), vega = join(source, 'third_party/vega');
 const read = (...path) => readFileSync(join(...path), 'utf8');
 const scripts = ['words.js', 'solver.js', 'scene.js', 'picture.js', 'panel.js', 'charts.js', 'derivative.js', 'link.js',
@@ -31,7 +31,7 @@ const parts = {
   'module': gzipSync(readFileSync(module), {level: 9}).toString('base64'),
   'glue': inside(read(glue)),
   'worker.js': inside(read(web, 'worker.js')),
-  'words.en.json': inside(read(web, 'words.en.json')),
+  'words': inside(read(web, `words.${language}.json`)),
   'lessons.json': inside(read(web, 'lessons.json')),
   'scenes': inside(JSON.stringify(scenes)),
   'about': inside(JSON.stringify(about)),

@@ -140,8 +140,9 @@ const Page = (() => {
       const {answer, code, milliseconds, less, more, of} = results[method] ?? {};
       if (!answer) continue;
       if (!answer.result) {
-        const status = code === 4 ? say('stopped') : answer.broken ? say('broken', {why: answer.broken}) : say('faulty');
-        Panel.show_column(byId('columns'), method, status, true, [], code === 4 ? say('stopped.words') : '');
+        const status = answer.broken ? say('broken', {why: answer.broken}) : code === 4 ? say('stopped') : say('faulty');
+        const words = answer.cancelled ? say('stopped.words') : (answer.faults ?? []).map((fault) => fault.text).join(' ');
+        Panel.show_column(byId('columns'), method, status, true, [], words);
         continue;
       }
       const {status, cost, steps, warnings, solutions, message} = answer.result;
@@ -324,6 +325,7 @@ const Page = (() => {
   function show_commands() {
     const lines = METHODS.map((method) => ['build/release/stickslip run', scene.source.path, '-m', method,
         ...[...Scenes.knob(scene, method), ...Scenes.overrides(scene)].map((one) => '--set ' + quoted(one))].join(' '));
+    byId('save-first').hidden = !scene.source.edited;
     byId('commands').textContent = lines.join('\n');
     byId('file-name').textContent = say('terminal.file', {name: scene.source.path});
     byId('file').textContent = scene.source.text;
@@ -474,6 +476,7 @@ const Page = (() => {
     addEventListener('hashchange', open_address);
     addEventListener('resize', show);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => scene && show());
+    Solver.compiled.catch((error) => { byId('scene-title').textContent = say('failed.browser', {why: error.message}); });
     open_address();
   }
 

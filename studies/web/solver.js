@@ -27,7 +27,8 @@ const Solver = (() => {
       if (data.code === undefined) { task.on_step?.(data.done, data.steps); return; }
       worker.running = null;
       task.resolve(data);
-      send(worker);
+      if (data.dead) stop(name);
+      else send(worker);
     });
     worker.thread.addEventListener('error', (event) => stop(name, {broken: event.message}));
     return worker;
@@ -82,5 +83,5 @@ const Solver = (() => {
   /** Starts workers before there is a request for them. */
   const warm = (...names) => { for (const name of names) start(name); };
 
-  return {ask, stop, age, busy, add_file, warm};
+  return {ask, stop, age, busy, add_file, warm, compiled};
 })();

@@ -1,5 +1,5 @@
 'use strict';
-/** The words of the page, all of words.en.json, and its numbers. */
+/** The words of the page, all in words.LANGUAGE.json, and its numbers. */
 const Words = (() => {
   const words = JSON.parse(document.getElementById('words').textContent);
 

@@ -1,6 +1,6 @@
 'use strict';
 // Runs scenes in the module, one at a time, away from the page. It gets {module} once, then {id, request}; it answers
-// {ready}, {id, done, steps} after each step, and {id, code, answer, milliseconds}.
+// {ready}, {id, done, steps} after steps, and {id, code, answer, milliseconds}; with `dead` it answers nothing more.
 
 const solver = (async () => {
   const {data: {module, files}} = await new Promise((got) => { self.addEventListener('message', got, {once: true}); });
@@ -23,8 +23,12 @@ const solver = (async () => {
     const start = performance.now();
     id = task.id;
     said = start;
-    const code = scene(JSON.stringify(task.request));
-    postMessage({id, code, answer: JSON.parse(result()), milliseconds: performance.now() - start});
+    try {
+      const code = scene(JSON.stringify(task.request));
+      postMessage({id, code, answer: JSON.parse(result()), milliseconds: performance.now() - start});
+    } catch (error) {  // the module's memory may be damaged: the page takes another one
+      postMessage({id, code: 1, answer: {broken: String(error)}, milliseconds: performance.now() - start, dead: true});
+    }
   };
 })();
 self.addEventListener('message', ({data}) => { if (data.request) solver.then((run) => run(data)); });
