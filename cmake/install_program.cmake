@@ -9,6 +9,8 @@ install(FILES LICENSE RENAME copyright DESTINATION "${CMAKE_INSTALL_DOCDIR}" COM
 install(FILES third_party/vega/THIRD_PARTY_NOTICES DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program PATTERN "manual.txt" EXCLUDE)
 install(DIRECTORY studies/scenes studies/meshes DESTINATION "${CMAKE_INSTALL_DATADIR}/stickslip" COMPONENT program)
+# (the page for learners, if play.sh has built it: reports link to it)
+install(FILES build/wasm/stickslip.html DESTINATION "${CMAKE_INSTALL_DATADIR}/stickslip" COMPONENT program OPTIONAL)
 install(FILES tools/stickslip.bash RENAME stickslip
   DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
 find_program(HELP2MAN_PROGRAM help2man)

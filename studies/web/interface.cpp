@@ -44,10 +44,12 @@ json diagnostics_json(const std::vector<Diagnostic>& diagnostics) {
   return out;
 }
 
-/// Unknowns of a scene, before it is solved.
+/// Unknowns of a scene, before it is solved, and the diagonal of the box around its bodies (length).
 json size_of(const Simulation& simulation) {
   const Model& model = simulation.problem->model;
-  return {{"displacements", model.free_dofs.size()},
+  const auto& points = simulation.problem->slots.points;
+  return {{"extent", (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm()},
+          {"displacements", model.free_dofs.size()},
           {"contact_points", model.points.size()},
           {"steps", model.most_steps()},
           {"bytes", needed_bytes(*simulation.problem, simulation.input)}};
@@ -141,7 +143,7 @@ EMSCRIPTEN_KEEPALIVE int stickslip_scene(const char* request) {
 }
 
 /// Result out, of the last stickslip_scene(): {"faults": [{"line", "column", "pointer", "message", "text"}], "notes":
-/// the same, "size": {"displacements", "contact_points", "steps", "bytes"}, "document": the scene as it was run,
+/// the same, "size": {"displacements", "contact_points", "steps", "bytes", "extent"}, "document": the scene as it was run,
 /// "result": result.json, "scales": its scales_json(), "picture": picture.json, with the `traction` vectors of its contact points}; the last
 /// four if the scene has no fault. {"cancelled": {"done", "steps"}} after code 4, {"broken": why} after code 1. Valid until the next call.
 EMSCRIPTEN_KEEPALIVE const char* stickslip_result() { return stickslip::session.result.c_str(); }

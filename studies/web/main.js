@@ -25,12 +25,13 @@ const Page = (() => {
   /** Solves by the three methods what the controls say. */
   function solve() {
     const now = ++version;
+    solve_reference();
+    const {key} = reference;
     for (const method of METHODS) {
       if (Solver.age(method) > 0.5) Solver.stop(method);
       Solver.ask(method, 'main', request(method, Scenes.knob(scene, method)), (done, steps) => { (results[method] ??= {}).progress = {done, steps}; })
-          .then((got) => { if (got) take(method, got, now); });
+          .then((got) => { if (got) take(method, got, now, key); });
     }
-    solve_reference();
     after_change();
   }
 
@@ -39,6 +40,7 @@ const Page = (() => {
     const asked = request('monolithic_al', [`${Scenes.knob_of('monolithic_al')}=${REFERENCE}`]), key = JSON.stringify(asked);
     if (reference.key === key) return;
     reference = {key, answer: null};
+    await null;  // after the answer itself
     const got = await Solver.ask('monolithic_al', 'reference', asked);
     if (!got || reference.key !== key) return;
     reference.answer = got.answer;
@@ -46,10 +48,10 @@ const Page = (() => {
   }
 
   /** Takes an answer of a method; where derivatives are shown, asks for the two runs beside it. */
-  async function take(method, got, asked) {
+  async function take(method, got, asked, key) {
     if (asked < (results[method]?.version ?? 0)) return;
-    results[method] = {...got, version: asked, knob: scene.knob};
-    const point = point_of(method, got.answer);
+    results[method] = {...got, version: asked, knob: scene.knob, key, error: results[method]?.error};
+    const point = key === reference.key ? point_of(method, got.answer) : null;
     if (point && asked === version) trail.push({kind: 'trail', method, ...point});
     if (trail.length > 300) trail.splice(0, trail.length - 300);
     show();
@@ -135,10 +137,22 @@ const Page = (() => {
 
   // ---- what is shown --------------------------------------------------------------------------------------------------
 
+  /** Whether a method solves for long already what the controls say, so that its old numbers are to be told apart. */
+  const is_stale = (method) => results[method]?.version !== version && Solver.age(method) > 0.4;
+
+  /** The error in words; while the answer or its reference is still to come, the last one that was known. */
+  function error_words(method) {
+    const result = results[method];
+    if (is_stale(method)) return '…';
+    if (result.key === reference.key && reference.answer) result.error = error_of(result.answer).words;
+    return result.error ?? '…';
+  }
+
   function show_columns() {
     for (const method of METHODS) {
-      const {answer, code, milliseconds, less, more, of} = results[method] ?? {};
+      const {answer, code, less, more, of} = results[method] ?? {};
       if (!answer) continue;
+      Panel.show_stale(byId('columns'), method, is_stale(method));
       if (!answer.result) {
         const status = answer.broken ? say('broken', {why: answer.broken}) : code === 4 ? say('stopped') : say('faulty');
         const words = answer.cancelled ? say('stopped.words') : (answer.faults ?? []).map((fault) => fault.text).join(' ');
@@ -158,7 +172,7 @@ const Page = (() => {
       } else {
         rows.push([say('answer'), is_good ? numeral(step.responses[shown.response], 7) : say('failed-at', {time: numeral(steps.at(-1)?.time ?? 0, 4)}), 'value']);
       }
-      rows.push([say('error'), reference.answer ? error_of(answer).words : '…', 'error'],
+      rows.push([say('error'), error_words(method), 'error'],
                 [say('newton'), numeral(cost.counts.newton), 'newton']);
       if (method === 'uzawa_al') rows.push([say('augmentations'), numeral(cost.counts.augmentations), 'augmentations']);
       rows.push([say('factorisations'), numeral(cost.counts.factorizations), 'factorizations'],
@@ -216,7 +230,7 @@ const Page = (() => {
     }
     rows.push(...trail);
     for (const method of METHODS) {
-      const point = point_of(method, results[method]?.answer);
+      const {answer, key} = results[method] ?? {}, point = key === reference.key ? point_of(method, answer) : null;
       if (point) rows.push({kind: 'now', method, name: say(method), power: results[method].knob, ...point});
     }
     return rows;
@@ -225,6 +239,7 @@ const Page = (() => {
   function rows_of_steps() {
     const rows = [], by = scene.lesson?.x;
     for (const method of METHODS) {
+      if (is_stale(method)) continue;
       const steps = results[method]?.answer?.result?.steps.filter((step) => step.status.startsWith('converged')) ?? [];
       steps.forEach((step, i) => {
         const y = shown.derivative ? Derivative.read(step, shown.response, shown.parameter).value : step.responses?.[shown.response];
@@ -389,7 +404,7 @@ const Page = (() => {
       Editor.show(answer);
       return;
     }
-    scene = Scenes.make(source, lesson, answer.document);
+    scene = Scenes.make(source, lesson, answer.document, answer.size);
     scene.every = Scenes.length_of(answer.size) <= 30000 ? 1 : 0;
     const number = (text) => Number.isFinite(Number(text)) ? Number(text) : null;
     if (given.knob !== undefined) scene.knob = number(given.knob);
@@ -444,6 +459,7 @@ const Page = (() => {
     for (const method of scene ? METHODS : []) {
       const age = Solver.busy(method, 'main') ? Solver.age(method) : 0, {done, steps} = results[method]?.progress ?? {};
       const seconds = numeral(Math.floor(age));
+      if (results[method]?.answer && Panel.show_stale(byId('columns'), method, is_stale(method))) show();
       Panel.show_progress(byId('columns'), method, age < 1 ? '' : done ? say('solving', {done, steps, seconds}) : say('waiting', {seconds}));
     }
   }

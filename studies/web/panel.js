@@ -12,7 +12,7 @@ const Panel = (() => {
   const name_of = (scene, control) => {
     const own = `load.${scene.lesson?.id}`;
     if (control.name === 'load') return Words.has(own) ? say(own) : say(control.factor ? 'control.load.factor' : 'control.load');
-    return say('control.' + control.name);
+    return control.place ? say('control.place', {name: control.place}) : say('control.' + control.name);
   };
 
   /** A slider with its value; `on_input` gets the number. */
@@ -45,7 +45,7 @@ const Panel = (() => {
         });
         place.append(group);
       } else {
-        place.append(slider('control-' + name, name_of(scene, control), control, (value) => numeral(value, 4),
+        place.append(slider('control-' + name.replaceAll(' ', '-'), name_of(scene, control), control, (value) => numeral(value, 4),
                             (value) => { control.value = value; changed(); }));
       }
     }
@@ -54,11 +54,11 @@ const Panel = (() => {
   /** Gives the sliders the values that the controls have. */
   function show_values(place, scene) {
     const set = (name, value, words) => {
-      const input = place.querySelector('#control-' + name);
+      const input = document.getElementById('control-' + name.replaceAll(' ', '-'));
       if (!input) return;
       input.value = value;
       input.setAttribute('aria-valuetext', words);
-      place.querySelector(`output[for="control-${name}"]`).textContent = words;
+      input.parentElement.querySelector('output').textContent = words;
     };
     set('knob', scene.knob ?? scene.knob_range[0] - 1,
         scene.knob === null ? say('control.knob.auto') : numeral(Number((10 ** scene.knob).toPrecision(3)), 3));
@@ -86,8 +86,15 @@ const Panel = (() => {
     const column = place.querySelector(`[data-method="${method}"]`);
     column.querySelector('.status').textContent = status;
     column.classList.toggle('bad', is_bad);
-    column.querySelector('dl').replaceChildren(...rows.flatMap(([name, text, kind = '']) => [make('dt', {}, name), make('dd', {class: kind, 'data-value': kind}, text)]));
+    column.querySelector('dl').replaceChildren(...rows.flatMap(([name, text, kind = '']) => [make('dt', {}, name), make('dd', {class: kind + (text.includes(' ') ? ' words' : ''), 'data-value': kind}, text)]));
     column.querySelector('.more').textContent = more;
+  }
+
+  /** Whether the numbers of a column are those of former controls; returns whether that is new. */
+  function show_stale(place, method, is_stale) {
+    const column = place.querySelector(`[data-method="${method}"]`), changes = column.classList.contains('stale') !== is_stale;
+    column.classList.toggle('stale', is_stale);
+    return changes;
   }
 
   /** How far a method is; no text: it is done. */
@@ -97,5 +104,5 @@ const Panel = (() => {
     column.querySelector('.stop').hidden = !text;
   }
 
-  return {draw_controls, show_values, draw_columns, show_column, show_progress, name_of, make};
+  return {draw_controls, show_values, draw_columns, show_column, show_stale, show_progress, name_of, make};
 })();

@@ -33,8 +33,9 @@ const Picture = (() => {
   const lumped = (picture) => picture.elements.every((nodes) => nodes.length === 2);
 
   /** How many times as large displacements are drawn: 1 if they are seen anyway, or matter. */
-  function magnification(picture) {
-    if (picture.finite || lumped(picture)) return 1;
+  function magnification(picture, scene) {
+    const has_offset = Object.values(scene.document.contacts ?? {}).some((contact) => contact.offset);  // which is not magnified
+    if (picture.finite || lumped(picture) || has_offset) return 1;
     const [low, high] = box_of(picture.points), extent = Math.hypot(high[0] - low[0], high[1] - low[1]);
     const largest = Math.max(...picture.displacement.map((u) => Math.hypot(u[0], u[1])));
     if (!(largest > 0) || largest > 0.02 * extent) return 1;
@@ -49,8 +50,8 @@ const Picture = (() => {
   }
 
   /** The window of a scene, in its lengths, and how long its arrows are. It is kept while the scene fits into it. */
-  function make_frame(picture, given) {
-    const times = magnification(picture), points = [...picture.points];
+  function make_frame(picture, scene) {
+    const given = scene.lesson?.window, times = magnification(picture, scene), points = [...picture.points];
     for (const step of [picture, ...(picture.frames ?? [])])
       step.displacement.forEach((u, n) => points.push([picture.points[n][0] + times * u[0], picture.points[n][1] + times * u[1]]));
     for (const obstacle of picture.obstacles) {
@@ -220,9 +221,9 @@ const Picture = (() => {
   /** Draws a scene into a place. `picture`: of the answer; `step`: which of its frames. */
   function draw(place, scene, whole, step, words, on_move) {
     const picture = at_step(whole, step);
-    if (!frame || frame.scene !== scene) frame = {...make_frame(whole, scene.lesson?.window), scene};
+    if (!frame || frame.scene !== scene) frame = {...make_frame(whole, scene), scene};
     frame.strongest = Math.max(frame.strongest, ...(picture.traction ?? []).map((t) => Math.hypot(t[0], t[1])));
-    frame.times = magnification(whole);
+    frame.times = magnification(whole, scene);
     const places = picture.points.map((x, n) => [x[0] + frame.times * picture.displacement[n][0], x[1] + frame.times * picture.displacement[n][1]]);
     const focused = document.activeElement?.closest('.handle')?.dataset.control;
     const svg = element('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'group', 'aria-label': words});
@@ -243,7 +244,7 @@ const Picture = (() => {
     });
     drawing.append(arrows, marks);
     svg.append(drawing);
-    for (const drag of scene.lesson?.drags ?? []) svg.append(handle(drag, scene, places, stands, on_move));
+    for (const drag of scene.drags) svg.append(handle(drag, scene, places, stands, on_move));
     place.replaceChildren(svg);
     if (focused) place.querySelector(`[data-control="${focused}"]`)?.focus({preventScroll: true});
     return frame.times;

@@ -14,7 +14,7 @@ const Scenes = (() => {
   const short = (x) => +x.toPrecision(12);
 
   /** Controls of any scene: friction of all contacts, all loads or motions together, the steps. */
-  function controls_of(document) {
+  function controls_of(document, extent) {
     const controls = {};
     const friction = {};
     for (const [name, contact] of Object.entries(document.contacts ?? {})) {
@@ -47,13 +47,30 @@ const Scenes = (() => {
       const pointers = Object.fromEntries(time.legs.map((leg, i) => [`/time/legs/${i}/1`, leg[1] / least]));
       controls.steps = {pointers, from: 1, to: Math.max(10, 2 * least), step: 1};
     }
+    Object.assign(controls, places_of(document, extent));
     return controls;
   }
 
-  /** A scene that is ready: `source` {path, text, edited}, `lesson`: its entry of lessons.json, `document`: as read. */
-  function make(source, lesson, document) {
+  /** Controls of the places of planes along their normals, and of circles, each with its handle. */
+  function places_of(document, extent) {
+    const places = {};
+    for (const [name, obstacle] of Object.entries(document.obstacles ?? {})) {
+      const base = `/obstacles/${escaped(name)}`, place = obstacle.plane?.point ?? obstacle.circle?.center;
+      if (!place || place.length > 2 || !(extent > 0)) continue;
+      const normal = obstacle.plane?.normal ?? [0, 1], axis = Math.abs(normal[0]) > Math.abs(normal[1]) ? 0 : 1;
+      const pointer = `${base}/${obstacle.plane ? 'plane/point' : 'circle/center'}/${axis}`;
+      const step = Number((10 ** Math.floor(Math.log10(extent / 100))).toPrecision(1));
+      places['place ' + name] = {pointers: {[pointer]: 1}, from: short(place[axis] - 30 * step), to: short(place[axis] + 30 * step), step,
+                                 place: name, drag: {control: 'place ' + name, kind: 'obstacle', place, axis}};
+    }
+    return places;
+  }
+
+  /** A scene that is ready: `source` {path, text, edited}, `lesson`: its entry of lessons.json, `document`: as read,
+      `size`: of it. */
+  function make(source, lesson, document, size) {
     const controls = {};
-    for (const [name, given] of Object.entries(lesson?.controls ?? controls_of(document))) {
+    for (const [name, given] of Object.entries(lesson?.controls ?? controls_of(document, size.extent))) {
       const control = controls[name] = {name, ...given};
       if (control.choices) {
         control.value = control.initial = 0;
@@ -65,7 +82,8 @@ const Scenes = (() => {
       }
     }
     for (const [name, value] of Object.entries(lesson?.set ?? {})) controls[name].value = value;
-    return {source, lesson, document, controls, knob: lesson?.knob?.value ?? null, knob_range: [lesson?.knob?.from ?? -3, lesson?.knob?.to ?? 8]};
+    const drags = lesson ? lesson.drags ?? [] : Object.values(controls).flatMap((control) => control.drag ?? []);
+    return {source, lesson, document, controls, drags, knob: lesson?.knob?.value ?? null, knob_range: [lesson?.knob?.from ?? -3, lesson?.knob?.to ?? 8]};
   }
 
   /** "POINTER=VALUE" of every control that was moved. `more`: {pointer: value} on top. */

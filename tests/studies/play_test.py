@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """play_test.py STICKSLIP SOURCE FOLDER [--times]: the page in FOLDER (the preset wasm) as a learner uses it, in Chromium,
 offline: sliders, a prediction, derivatives, a scene with a fault, a run that is stopped, a link, a phone, dark, paper.
-The numbers on the page are those of the program. --times prints how fast the page answers. Exit code 77, which ctest
-counts as skipped, where there is no page or no Chromium."""
+The numbers on the page are those of the program. --times prints how fast the page answers; --picture FILE writes the
+picture of docs/play.md. Exit code 77, which ctest counts as skipped, where there is no page or no Chromium."""
+import base64
 import json
 import math
 import pathlib
@@ -135,6 +136,13 @@ QUICK = WAIT + """
   }
   return times.sort((a, b) => a - b);
 """
+PICTURE = WAIT + """
+  await until(() => methods.every((method) => value(method, 'error')));
+  click('.skip-prediction');
+  slide('load', 0.04);
+  await pause(2000);
+  await settled();
+"""
 FIRST = WAIT + "await until(() => methods.some((method) => value(method, 'value'))); return performance.now();"
 
 
@@ -236,6 +244,13 @@ def show_times(browser, page):
         print(f"{lesson}: slider to picture {times[len(times) // 2]:.0f} ms (median), {times[-1]:.0f} ms (slowest)")
 
 
+def write_picture(browser, file):
+    visit(browser, "#lesson=cylinders", height=700)
+    browser.run(PICTURE)
+    picture = browser.ask("Page.captureScreenshot", format="webp", quality=55)["data"]
+    pathlib.Path(file).write_bytes(base64.b64decode(picture))
+
+
 def main():
     program, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve()
     page, chromium = folder / "stickslip.html", next(filter(None, map(shutil.which, BROWSERS)), None)
@@ -248,6 +263,8 @@ def main():
         browser.ask("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
         if "--times" in sys.argv:
             show_times(browser, page)
+        elif "--picture" in sys.argv:
+            write_picture(browser, sys.argv[-1])
         else:
             check_page(browser, program, source)
             check_forms(browser)
