@@ -28,7 +28,7 @@ const Page = (() => {
     solve_reference();
     const {key} = reference;
     for (const method of METHODS) {
-      if (Solver.age(method) > 0.5) Solver.stop(method);
+      if (Solver.age(method) > 1) Solver.stop(method);
       Solver.ask(method, 'main', request(method, Scenes.knob(scene, method)), (done, steps) => { (results[method] ??= {}).progress = {done, steps}; })
           .then((got) => { if (got) take(method, got, now, key); });
     }
@@ -40,6 +40,9 @@ const Page = (() => {
     const asked = request('monolithic_al', [`${Scenes.knob_of('monolithic_al')}=${REFERENCE}`]), key = JSON.stringify(asked);
     if (reference.key === key) return;
     reference = {key, answer: null};
+    sweep = [];
+    sweeping = null;
+    byId('sweep').textContent = say('sweep');
     await null;  // after the answer itself
     const got = await Solver.ask('monolithic_al', 'reference', asked);
     if (!got || reference.key !== key) return;
@@ -386,6 +389,7 @@ const Page = (() => {
       input.checked = (input.value === 'derivative') === shown.derivative;
       input.disabled = parameters.length === 0;
     }
+    byId('views').setAttribute('aria-label', say('view'));
     byId('views').replaceChildren(...['cost', 'steps', 'contact'].map((view) => {
       const input = Panel.make('input', {type: 'radio', name: 'view', value: view});
       input.checked = view === shown.view;

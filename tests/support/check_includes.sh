@@ -3,7 +3,7 @@
 # check_includes.sh --self-test: fails where a wrong include would go unseen.
 #
 #   core <- methods <- sensitivity <- studies; within core: algebra, mesh <- solids, contact <- model <- engine;
-#   within studies: io <- input <- run (and verify) <- report <- sweep <- app, and what python needs of them.
+#   within studies: io <- input <- run (and verify) <- report <- sweep <- app, and what python and web need of them.
 #   studies/verify, which checks what all others find, shares nothing with them.
 #   Below studies/ there is no JSON and no printing; solver libraries are seen by core/algebra alone.
 set -euo pipefail
@@ -26,11 +26,13 @@ allowed() {
     studies/sweep) echo '(core|methods|sensitivity|studies/(io|input|verify|run|report|sweep|version\.hpp))' ;;
     studies/verify) echo 'studies/verify/' ;;
     studies/app) echo '(core|methods|sensitivity|studies/(io|input|run|report|sweep|verify|app))/' ;;
+    studies/web) echo 'core/mesh/decimal\.hpp|studies/(io|input|run)/|studies/app/exit_codes\.hpp' ;;
     studies/python) echo '(core|methods|sensitivity|studies)/' ;;
   esac
 }
 folders="core/algebra core/mesh core/solids core/contact core/model core/engine methods sensitivity
-  studies/io studies/input studies/run studies/report studies/sweep studies/verify studies/app studies/python"
+  studies/io studies/input studies/run studies/report studies/sweep studies/verify studies/app studies/python
+  studies/web"
 solver_headers='<(cholmod|dmumps_c|SuiteSparse_config)[^>]*>'
 printing='<(nlohmann|fmt|CLI)/|<(iostream|print)>|\b(printf|fprintf|puts) *\(|\b(cout|cerr)\b'
 
