@@ -188,9 +188,17 @@ const Page = (() => {
 
   const judged_response = (answer) => last_step(answer)?.responses[shown.response] ?? NaN;
 
+  /** A picture before anything happened: what a learner predicts from. */
+  const before = (picture) => ({
+    ...picture, ...(picture.frames?.[0] && {obstacles: picture.frames[0].obstacles}), frames: [], traction: [],
+    displacement: picture.displacement.map((u) => u.map(() => 0)), von_mises: picture.von_mises.map(() => 0),
+    contact: picture.contact.map((point) => ({...point, state: 'open'})),
+  });
+
   function show_picture() {
-    const answer = results[shown.drawn]?.answer, picture = answer?.picture;
-    if (!picture) return;
+    const solved = results[shown.drawn]?.answer?.picture;
+    if (!solved) return;
+    const picture = answered ? solved : before(solved);
     const frames = picture.frames ?? [];
     byId('time').hidden = frames.length < 3;
     const step = byId('step');
@@ -202,13 +210,13 @@ const Page = (() => {
     const counts = {open: 0, stick: 0, slip: 0, closed: 0};
     for (const point of (frame ?? picture).contact) ++counts[point.state];
     const words = say('picture.alt', {method: say(shown.drawn), ...counts, slip: counts.slip + counts.closed});
-    const times = Picture.draw(byId('picture'), scene, picture, frame?.step, words, (control, value) => {
+    const times = Picture.draw(byId('picture'), scene, picture, frame?.step, answered, words, (control, value) => {
       if (control.value === value) return;
       control.value = value;
       changed();
     });
     Picture.legend(byId('legend'));
-    byId('legend').append(' ' + say('drawn', {method: say(shown.drawn)}), times === 1 ? '' : ' ' + say('magnified', {times: numeral(times)}));
+    if (answered) byId('legend').append(' ' + say('drawn', {method: say(shown.drawn)}), times === 1 ? '' : ' ' + say('magnified', {times: numeral(times)}));
   }
 
   function show_arrow() {
@@ -431,7 +439,7 @@ const Page = (() => {
     byId('sweep').textContent = say('sweep');
     byId('lesson').value = lesson?.id ?? '';
     byId('accuracy').value = shown.accuracy;
-    byId('scene-title').textContent = answer.document.title ?? source.path;
+    byId('scene-title').textContent = answer.document.title ?? (lesson ? say(lesson.id + '.name') : source.path);
     document.body.classList.toggle('unanswered', !answered);
     Lessons.draw(lesson, answered, () => { answered = true; document.body.classList.remove('unanswered'); show(); after_change(); });
     Editor.set(source.text);

@@ -218,10 +218,11 @@ const Picture = (() => {
   });
   for (const end of ['pointerup', 'pointercancel']) addEventListener(end, () => { moving = null; });
 
-  /** Draws a scene into a place. `picture`: of the answer; `step`: which of its frames. */
-  function draw(place, scene, whole, step, words, on_move) {
+  /** Draws a scene into a place. `whole`: picture of the answer; `step`: which of its frames; `key`: while it stays, the
+      window stays too. */
+  function draw(place, scene, whole, step, key, words, on_move) {
     const picture = at_step(whole, step);
-    if (!frame || frame.scene !== scene) frame = {...make_frame(whole, scene), scene};
+    if (!frame || frame.scene !== scene || frame.key !== key) frame = {...make_frame(whole, scene), scene, key};
     frame.strongest = Math.max(frame.strongest, ...(picture.traction ?? []).map((t) => Math.hypot(t[0], t[1])));
     frame.times = magnification(whole, scene);
     const places = picture.points.map((x, n) => [x[0] + frame.times * picture.displacement[n][0], x[1] + frame.times * picture.displacement[n][1]]);
