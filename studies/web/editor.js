@@ -6,9 +6,13 @@ const Editor = (() => {
   let timer = 0, last = null;
 
   /** Whether a browser should solve a scene of this size. */
-  const bears = (size) => size.displacements <= Scenes.MOST.displacements && Scenes.length_of(size) <= Scenes.MOST.length;
-  const too_large = (size) => say('editor.too-large', {...size, ...Object.fromEntries(
-      Object.entries({most: Scenes.MOST.displacements, most_over_steps: Scenes.MOST.length}).map(([key, value]) => [key, numeral(value)]))});
+  const bears = (size) =>
+      size.displacements <= Scenes.MOST.displacements && Scenes.length_of(size) <= Scenes.MOST.length;
+  const too_large = (size) => say('editor.too-large', {
+    ...size,
+    ...Object.fromEntries(Object.entries({most: Scenes.MOST.displacements, most_over_steps: Scenes.MOST.length})
+                              .map(([key, value]) => [key, numeral(value)]))
+  });
 
   function select(line, column) {
     const text = byId('text'), lines = text.value.split('\n');
@@ -23,7 +27,10 @@ const Editor = (() => {
     const place = byId('faults');
     place.replaceChildren();
     const {faults = [], notes = [], size, broken} = answer;
-    if (broken) { place.append(Panel.make('p', {class: 'fault'}, say('broken', {why: broken}))); return false; }
+    if (broken) {
+      place.append(Panel.make('p', {class: 'fault'}, say('broken', {why: broken})));
+      return false;
+    }
     if (faults.length) place.append(Panel.make('p', {}, say('editor.faults', {count: faults.length})));
     const list = place.appendChild(Panel.make('ul'));
     for (const fault of [...faults, ...notes]) {
@@ -34,8 +41,12 @@ const Editor = (() => {
       } else item.append(fault.text);
     }
     if (!faults.length && size)
-      place.append(Panel.make('p', {class: bears(size) ? 'fine' : 'fault'},
-                              bears(size) ? say('editor.fine', {...size, displacements: numeral(size.displacements), contact_points: numeral(size.contact_points)}) : too_large(size)));
+      place.append(Panel.make(
+          'p', {class: bears(size) ? 'fine' : 'fault'},
+          bears(size) ?
+              say('editor.fine',
+                  {...size, displacements: numeral(size.displacements), contact_points: numeral(size.contact_points)}) :
+              too_large(size)));
     return faults.length === 0 && Boolean(size) && bears(size);
   }
 
@@ -77,20 +88,40 @@ const Editor = (() => {
   function start(run) {
     const shipped = byId('shipped');
     shipped.append(Panel.make('option', {value: ''}, say('editor.choose')));
-    for (const path of Object.keys(Scenes.shipped)) shipped.append(Panel.make('option', {value: path}, path.split('/').at(-1)));
-    shipped.addEventListener('change', () => { if (shipped.value) { set(Scenes.shipped[shipped.value]); check_now(); } });
-    byId('text').addEventListener('input', () => { clearTimeout(timer); timer = setTimeout(check_now, 250); });
+    for (const path of Object.keys(Scenes.shipped))
+      shipped.append(Panel.make('option', {value: path}, path.split('/').at(-1)));
+    shipped.addEventListener('change', () => {
+      if (shipped.value) {
+        set(Scenes.shipped[shipped.value]);
+        check_now();
+      }
+    });
+    byId('text').addEventListener('input', () => {
+      clearTimeout(timer);
+      timer = setTimeout(check_now, 250);
+    });
     byId('run').addEventListener('click', async () => {
       await check_now();
       if (last) run({path: 'scene.json', text: byId('text').value, edited: true});
     });
     byId('open-file').addEventListener('change', (event) => take(event.target.files));
-    byId('open-editor').addEventListener('click', () => { open(byId('editor').hidden); if (!byId('editor').hidden) { check_now(); byId('text').focus({preventScroll: true}); } });
+    byId('open-editor').addEventListener('click', () => {
+      open(byId('editor').hidden);
+      if (!byId('editor').hidden) {
+        check_now();
+        byId('text').focus({preventScroll: true});
+      }
+    });
     addEventListener('dragover', (event) => event.preventDefault());
-    addEventListener('drop', (event) => { event.preventDefault(); take(event.dataTransfer.files); });
+    addEventListener('drop', (event) => {
+      event.preventDefault();
+      take(event.dataTransfer.files);
+    });
   }
 
-  const set = (text) => { byId('text').value = text; };
+  const set = (text) => {
+    byId('text').value = text;
+  };
 
   return {start, set, show, check, open, bears, too_large};
 })();

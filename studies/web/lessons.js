@@ -24,7 +24,9 @@ const Lessons = (() => {
     see.hidden = true;
     choices_of(lesson).forEach((choice, i) => {
       const input = Panel.make('input', {type: 'radio', name: 'prediction', value: i});
-      input.addEventListener('change', () => { form.querySelector('.show').disabled = false; });
+      input.addEventListener('change', () => {
+        form.querySelector('.show').disabled = false;
+      });
       form.append(Panel.make('label', {}, input, ' ' + choice));
     });
     const show = Panel.make('button', {type: 'submit', class: 'show', disabled: ''}, say('predict.show'));
@@ -32,15 +34,23 @@ const Lessons = (() => {
     form.append(Panel.make('p', {class: 'buttons'}, show, ' ', skip));
     const answer = (predicted) => {
       const right = choices_of(lesson)[lesson.right];
-      const verdict = predicted === null ? 'predict.none' : predicted === lesson.right ? 'predict.right' : 'predict.wrong';
-      const mark = Panel.make('p', {class: 'verdict ' + (predicted === lesson.right ? 'right' : 'wrong')}, say(verdict, {answer: right.replace(/\.$/, '')}));
+      const verdict = predicted === null         ? 'predict.none' :
+                      predicted === lesson.right ? 'predict.right' :
+                                                   'predict.wrong';
+      const mark = Panel.make(
+          'p', {class: 'verdict ' + (predicted === lesson.right ? 'right' : 'wrong')},
+          say(verdict, {answer: right.replace(/\.$/, '')}));
       see.replaceChildren(mark, Panel.make('p', {}, say(lesson.id + '.see')));
       see.hidden = false;
       form.hidden = true;
       on_answer();
     };
     form.hidden = false;
-    form.onsubmit = (event) => { event.preventDefault(); const chosen = form.querySelector('input:checked'); if (chosen) answer(Number(chosen.value)); };
+    form.onsubmit = (event) => {
+      event.preventDefault();
+      const chosen = form.querySelector('input:checked');
+      if (chosen) answer(Number(chosen.value));
+    };
     skip.addEventListener('click', () => answer(null));
     if (answered) answer(null);
   }

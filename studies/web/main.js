@@ -4,22 +4,25 @@ const Page = (() => {
   const {say, numeral} = Words;
   const byId = (id) => document.getElementById(id);
   const METHODS = Scenes.METHODS, REFERENCE = 10;  // the scale of the monolithic method that errors are against
-  const settled = 500;                             // milliseconds without a change before words are read and the address is written
+  const settled = 500;  // milliseconds without a change before words are read and the address is written
   const about = JSON.parse(byId('about').textContent);
 
   let scene = null;
-  let shown = {};        // response, parameter, derivative, view, drawn, accuracy, step
-  let answered = true;   // whether the lesson's prediction was made
-  let results = {};      // method: {answer, code, milliseconds, less, more}
+  let shown = {};       // response, parameter, derivative, view, drawn, accuracy, step
+  let answered = true;  // whether the lesson's prediction was made
+  let results = {};     // method: {answer, code, milliseconds, less, more}
   let reference = {key: '', answer: null};
   let trail = [], sweep = [], sweeping = null;
   let version = 0, timer = 0;
 
-  // ---- what is asked ----------------------------------------------------------------------------------------------
+  // ---- what is asked ---------------------------------------------------------------------------------------------
 
   const request = (method, knob, more) => ({
-    scene: scene.source.text, file: scene.source.path.split('/').at(-1), method,
-    set: [...knob, ...Scenes.overrides(scene, more)], every: scene.every,
+    scene: scene.source.text,
+    file: scene.source.path.split('/').at(-1),
+    method,
+    set: [...knob, ...Scenes.overrides(scene, more)],
+    every: scene.every,
   });
 
   /** Solves by the three methods what the controls say. */
@@ -29,15 +32,23 @@ const Page = (() => {
     const {key} = reference;
     for (const method of METHODS) {
       if (Solver.age(method) > 1) Solver.stop(method);
-      Solver.ask(method, 'main', request(method, Scenes.knob(scene, method)), (done, steps) => { (results[method] ??= {}).progress = {done, steps}; })
-          .then((got) => { if (got) take(method, got, now, key); });
+      Solver
+          .ask(
+              method, 'main', request(method, Scenes.knob(scene, method)),
+              (done, steps) => {
+                (results[method] ??= {}).progress = {done, steps};
+              })
+          .then((got) => {
+            if (got) take(method, got, now, key);
+          });
     }
     after_change();
   }
 
   /** The reference depends on all controls but stiffness and scale. */
   async function solve_reference() {
-    const asked = request('monolithic_al', [`${Scenes.knob_of('monolithic_al')}=${REFERENCE}`]), key = JSON.stringify(asked);
+    const asked = request('monolithic_al', [`${Scenes.knob_of('monolithic_al')}=${REFERENCE}`]),
+          key = JSON.stringify(asked);
     if (reference.key === key) return;
     reference = {key, answer: null};
     sweep = [];
@@ -61,7 +72,9 @@ const Page = (() => {
     const parameter = shown.parameter;
     if (!shown.derivative || !parameter || !got.answer.result || asked !== version) return;
     const {step} = Derivative.step_of(got.answer.document, parameter, scene.lesson?.difference);
-    const run = (name, by) => Solver.ask(method, name, request(method, Scenes.knob(scene, method), Derivative.moved(got.answer.document, parameter, by)));
+    const run = (name, by) => Solver.ask(
+        method, name,
+        request(method, Scenes.knob(scene, method), Derivative.moved(got.answer.document, parameter, by)));
     const [less, more] = await Promise.all([run('less', -step), run('more', step)]);
     if (!less || !more || results[method].version !== asked) return;
     Object.assign(results[method], {less: less.answer, more: more.answer, of: parameter});
@@ -78,17 +91,21 @@ const Page = (() => {
     const all = powers.length * METHODS.length;
     await Promise.all(METHODS.map(async (method) => {
       for (const power of powers) {
-        const got = await Solver.ask(method, 'sweep', {...request(method, Scenes.knob(scene, method, power)), every: 0});
+        const got =
+            await Solver.ask(method, 'sweep', {...request(method, Scenes.knob(scene, method, power)), every: 0});
         if (sweeping !== mine) return;
         byId('sweep').textContent = say('sweeping', {done: ++done, all});
         if (got?.code === 0) sweep.push({method, power, answer: got.answer});
         show_chart();
       }
     }));
-    if (sweeping === mine) { sweeping = null; byId('sweep').textContent = say('sweep'); }
+    if (sweeping === mine) {
+      sweeping = null;
+      byId('sweep').textContent = say('sweep');
+    }
   }
 
-  // ---- what the answers say -----------------------------------------------------------------------------------------
+  // ---- what the answers say --------------------------------------------------------------------------------------
 
   const last_step = (answer) => answer?.result?.status.startsWith('converged') ? answer.result.steps.at(-1) : null;
 
@@ -109,9 +126,11 @@ const Page = (() => {
     if (!Number.isFinite(right)) return {words: say('no-reference')};
     const step = last_step(answer);
     if (shown.derivative) {
-      const [sides, true_sides] = [step, last_step(reference.answer)].map((one) => Derivative.read(one, shown.response, shown.parameter).sides);
+      const [sides, true_sides] =
+          [step, last_step(reference.answer)].map((one) => Derivative.read(one, shown.response, shown.parameter).sides);
       if (sides && true_sides) {
-        const most = Math.max(...true_sides.map(Math.abs)), error = Math.max(...sides.map((side, i) => Math.abs(side - true_sides[i]))) / most;
+        const most = Math.max(...true_sides.map(Math.abs)),
+              error = Math.max(...sides.map((side, i) => Math.abs(side - true_sides[i]))) / most;
         return {error, words: numeral(error, 2)};
       }
       if (sides || true_sides) return {words: say('not-compared')};
@@ -135,10 +154,11 @@ const Page = (() => {
   function point_of(method, answer) {
     if (!last_step(answer)) return null;
     const {error} = error_of(answer);
-    return error === undefined ? null : {x: Math.max(work_of(answer), 1 / 30), y: Math.max(error, Charts.GROUND), error};
+    return error === undefined ? null :
+                                 {x: Math.max(work_of(answer), 1 / 30), y: Math.max(error, Charts.GROUND), error};
   }
 
-  // ---- what is shown --------------------------------------------------------------------------------------------------
+  // ---- what is shown ---------------------------------------------------------------------------------------------
 
   /** Whether a method solves for long already what the controls say, so that its old numbers are to be told apart. */
   const is_stale = (method) => results[method]?.version !== version && Solver.age(method) > 0.4;
@@ -157,8 +177,11 @@ const Page = (() => {
       if (!answer) continue;
       Panel.show_stale(byId('columns'), method, is_stale(method));
       if (!answer.result) {
-        const status = answer.broken ? say('broken', {why: answer.broken}) : code === 4 ? say('stopped') : say('faulty');
-        const words = answer.cancelled ? say('stopped.words') : (answer.faults ?? []).map((fault) => fault.text).join(' ');
+        const status = answer.broken ? say('broken', {why: answer.broken}) :
+                       code === 4    ? say('stopped') :
+                                       say('faulty');
+        const words =
+            answer.cancelled ? say('stopped.words') : (answer.faults ?? []).map((fault) => fault.text).join(' ');
         Panel.show_column(byId('columns'), method, status, true, [], words);
         continue;
       }
@@ -170,18 +193,29 @@ const Page = (() => {
         if (sides) rows.push([say('below'), numeral(sides[0]), 'value'], [say('above'), numeral(sides[1]), 'value']);
         else rows.push([say('derivative'), numeral(value), 'value']);
         const low = judged_response(less), high = judged_response(more);
-        const difference = less && of === shown.parameter ? (high - low) / (2 * Derivative.step_of(answer.document, of, scene.lesson?.difference).step) : NaN;
+        const difference =
+            less && of === shown.parameter ?
+                (high - low) / (2 * Derivative.step_of(answer.document, of, scene.lesson?.difference).step) :
+                NaN;
         rows.push([say('difference'), less && of === shown.parameter ? numeral(difference) : '…', 'difference']);
       } else {
-        rows.push([say('answer'), is_good ? numeral(step.responses[shown.response], 7) : say('failed-at', {time: numeral(steps.at(-1)?.time ?? 0, 4)}), 'value']);
+        rows.push([
+          say('answer'),
+          is_good ? numeral(step.responses[shown.response], 7) :
+                    say('failed-at', {time: numeral(steps.at(-1)?.time ?? 0, 4)}),
+          'value'
+        ]);
       }
-      rows.push([say('error'), error_words(method), 'error'],
-                [say('newton'), numeral(cost.counts.newton), 'newton']);
+      rows.push([say('error'), error_words(method), 'error'], [say('newton'), numeral(cost.counts.newton), 'newton']);
       if (method === 'uzawa_al') rows.push([say('augmentations'), numeral(cost.counts.augmentations), 'augmentations']);
-      rows.push([say('factorisations'), numeral(cost.counts.factorizations), 'factorizations'],
-                [say('milliseconds'), numeral(1000 * cost.seconds.total, 2), 'milliseconds']);
+      rows.push(
+          [say('factorisations'), numeral(cost.counts.factorizations), 'factorizations'],
+          [say('milliseconds'), numeral(1000 * cost.seconds.total, 2), 'milliseconds']);
       const others = (solutions ?? []).map((other) => numeral(other.responses[shown.response], 4));
-      const extra = warnings.some((warning) => warning.code === 'non_unique') ? say('warning.non_unique', {others: others.join('; ')}) : is_good ? '' : message;
+      const extra = warnings.some((warning) => warning.code === 'non_unique') ?
+                        say('warning.non_unique', {others: others.join('; ')}) :
+                    is_good ? '' :
+                              message;
       Panel.show_column(byId('columns'), method, say('status.' + status), !is_good, rows, extra);
     }
   }
@@ -190,8 +224,12 @@ const Page = (() => {
 
   /** A picture before anything happened: what a learner predicts from. */
   const before = (picture) => ({
-    ...picture, ...(picture.frames?.[0] && {obstacles: picture.frames[0].obstacles}), frames: [], traction: [],
-    displacement: picture.displacement.map((u) => u.map(() => 0)), von_mises: picture.von_mises.map(() => 0),
+    ...picture,
+    ...(picture.frames?.[0] && {obstacles: picture.frames[0].obstacles}),
+    frames: [],
+    traction: [],
+    displacement: picture.displacement.map((u) => u.map(() => 0)),
+    von_mises: picture.von_mises.map(() => 0),
     contact: picture.contact.map((point) => ({...point, state: 'open'})),
   });
 
@@ -206,7 +244,9 @@ const Page = (() => {
     const index = shown.step === null ? frames.length - 1 : Math.min(shown.step, frames.length - 1);
     step.value = index;
     const frame = frames[index];
-    if (frame) byId('step-words').textContent = say('time.at', {step: frame.step, steps: frames.at(-1).step, time: numeral(frame.time, 3)});
+    if (frame)
+      byId('step-words').textContent =
+          say('time.at', {step: frame.step, steps: frames.at(-1).step, time: numeral(frame.time, 3)});
     const counts = {open: 0, stick: 0, slip: 0, closed: 0};
     for (const point of (frame ?? picture).contact) ++counts[point.state];
     const words = say('picture.alt', {method: say(shown.drawn), ...counts, slip: counts.slip + counts.closed});
@@ -216,7 +256,10 @@ const Page = (() => {
       changed();
     });
     Picture.legend(byId('legend'));
-    if (answered) byId('legend').append(' ' + say('drawn', {method: say(shown.drawn)}), times === 1 ? '' : ' ' + say('magnified', {times: numeral(times)}));
+    if (answered)
+      byId('legend').append(
+          ' ' + say('drawn', {method: say(shown.drawn)}),
+          times === 1 ? '' : ' ' + say('magnified', {times: numeral(times)}));
   }
 
   function show_arrow() {
@@ -226,12 +269,15 @@ const Page = (() => {
     if (!fits) return;
     const {value, step} = Derivative.step_of(answer.document, of, scene.lesson?.difference);
     const slope = Derivative.read(last_step(answer), shown.response, of);
-    Derivative.draw(byId('arrow'), {value, step, response: judged_response(answer), less: judged_response(less), more: judged_response(more)},
-                    slope, {response: shown.response, parameter: of});
+    Derivative.draw(
+        byId('arrow'),
+        {value, step, response: judged_response(answer), less: judged_response(less), more: judged_response(more)},
+        slope, {response: shown.response, parameter: of});
   }
 
   const what = () => shown.derivative ? `d ${shown.response} / d ${shown.parameter}` : shown.response;
-  const name_with = (method, power) => say(method) + (power === null ? '' : ' ' + numeral(Number((10 ** power).toPrecision(3)), 3));
+  const name_with = (method, power) =>
+      say(method) + (power === null ? '' : ' ' + numeral(Number((10 ** power).toPrecision(3)), 3));
 
   function rows_of_cost() {
     const rows = [{kind: 'asked', y: 10 ** shown.accuracy}];
@@ -253,7 +299,8 @@ const Page = (() => {
       if (is_stale(method)) continue;
       const steps = results[method]?.answer?.result?.steps.filter((step) => step.status.startsWith('converged')) ?? [];
       steps.forEach((step, i) => {
-        const y = shown.derivative ? Derivative.read(step, shown.response, shown.parameter).value : step.responses?.[shown.response];
+        const y = shown.derivative ? Derivative.read(step, shown.response, shown.parameter).value :
+                                     step.responses?.[shown.response];
         const x = by && by !== shown.response ? step.responses?.[by] : step.time;
         if (Number.isFinite(x) && Number.isFinite(y)) rows.push({kind: 'line', method, x, y, order: i});
       });
@@ -271,11 +318,14 @@ const Page = (() => {
     if (!(P > 0)) return [];
     const {E, nu} = document.bodies.upper.material.linear_elastic, mu = document.contacts.touch.friction;
     const R = document.bodies.upper.mesh.half_disk.radius / 2, stiffness = E / (2 * (1 - nu * nu));
-    const b = Math.sqrt(4 * P * R / (Math.PI * stiffness)), peak = 2 * P / (Math.PI * b), c = b * Math.sqrt(Math.max(0, 1 - Math.abs(Q) / (mu * P)));
+    const b = Math.sqrt(4 * P * R / (Math.PI * stiffness)), peak = 2 * P / (Math.PI * b),
+          c = b * Math.sqrt(Math.max(0, 1 - Math.abs(Q) / (mu * P)));
     const rows = [], half = (x, a) => Math.sqrt(Math.max(0, 1 - (x / a) ** 2));
     for (let i = -60; i <= 60; ++i) {
       const x = b * i / 60, p = peak * half(x, b), q = mu * (p - (Math.abs(x) < c ? c / b * peak * half(x, c) : 0));
-      rows.push({kind: 'exact', what: 'p', x, y: p, order: x}, {kind: 'exact', what: 'q', x, y: Math.sign(Q || 1) * q, order: x});
+      rows.push(
+          {kind: 'exact', what: 'p', x, y: p, order: x},
+          {kind: 'exact', what: 'q', x, y: Math.sign(Q || 1) * q, order: x});
     }
     return rows;
   }
@@ -286,12 +336,16 @@ const Page = (() => {
       points.x.forEach((x, i) => {
         if (scene.lesson?.window && (x < scene.lesson.window[0] || x > scene.lesson.window[2])) return;
         rows.push({kind: 'point', what: say('chart.pressure'), line: name + ' p', x, y: -points.normal[i], order: x});
-        if (points.tangential[i] !== undefined) rows.push({kind: 'point', what: say('chart.shear'), line: name + ' q', x, y: -points.tangential[i], order: x});
+        if (points.tangential[i] !== undefined)
+          rows.push(
+              {kind: 'point', what: say('chart.shear'), line: name + ' q', x, y: -points.tangential[i], order: x});
       });
     }
     if (scene.lesson?.exact === 'cattaneo' && answer) {
-      const exact = cattaneo(answer), of_rows = rows.filter((row) => row.line.endsWith('q')).reduce((sum, row) => sum + row.y, 0);
-      const side = Math.sign(of_rows) || 1, of_exact = Math.sign(exact.filter((row) => row.what === 'q').reduce((sum, row) => sum + row.y, 0)) || 1;
+      const exact = cattaneo(answer),
+            of_rows = rows.filter((row) => row.line.endsWith('q')).reduce((sum, row) => sum + row.y, 0);
+      const side = Math.sign(of_rows) || 1,
+            of_exact = Math.sign(exact.filter((row) => row.what === 'q').reduce((sum, row) => sum + row.y, 0)) || 1;
       rows.push(...exact.map((row) => row.what === 'q' ? {...row, y: row.y * side * of_exact} : row));
     }
     return rows;
@@ -303,54 +357,95 @@ const Page = (() => {
       if (!best[row.method] || row.x < best[row.method].x) best[row.method] = row;
     const order = Object.values(best).sort((a, b) => a.x - b.x), accuracy = numeral(10 ** shown.accuracy);
     byId('accuracy-words').textContent = accuracy;
-    if (!order.length) { byId('verdict').textContent = say('verdict.none', {accuracy}); return; }
-    const others = [...order.slice(1).map((row) => say('verdict.other', {method: say(row.method), work: numeral(row.x, 3)})),
-                    ...METHODS.filter((method) => !best[method]).map((method) => say('verdict.not', {method: say(method)}))];
-    const knob = order[0].power === null ? say('control.knob.auto') : numeral(Number((10 ** order[0].power).toPrecision(3)), 3);
-    byId('verdict').textContent = say('verdict', {accuracy, method: say(order[0].method), knob, work: numeral(order[0].x, 3), others: others.join(' ')});
+    if (!order.length) {
+      byId('verdict').textContent = say('verdict.none', {accuracy});
+      return;
+    }
+    const others = [
+      ...order.slice(1).map((row) => say('verdict.other', {method: say(row.method), work: numeral(row.x, 3)})),
+      ...METHODS.filter((method) => !best[method]).map((method) => say('verdict.not', {method: say(method)}))
+    ];
+    const knob =
+        order[0].power === null ? say('control.knob.auto') : numeral(Number((10 ** order[0].power).toPrecision(3)), 3);
+    byId('verdict').textContent =
+        say('verdict',
+            {accuracy, method: say(order[0].method), knob, work: numeral(order[0].x, 3), others: others.join(' ')});
   }
 
   function show_chart() {
     const name = shown.view, rows = {cost: rows_of_cost, steps: rows_of_steps, contact: rows_of_contact}[name]();
     const by = scene.lesson?.x && scene.lesson.x !== shown.response ? scene.lesson.x : say('chart.time');
-    const titles = {cost: {x: say('chart.work'), y: say('chart.error', {what: what()})}, steps: {x: by, y: what()},
-                    contact: {x: say('chart.place'), y: say('chart.traction')}}[name];
+    const titles = {
+      cost: {x: say('chart.work'), y: say('chart.error', {what: what()})},
+      steps: {x: by, y: what()},
+      contact: {x: say('chart.place'), y: say('chart.traction')}
+    }[name];
     byId('cost').hidden = name !== 'cost';
     if (name === 'cost') show_verdict(rows);
-    const values = rows.filter((row) => row.kind === 'now').map((row) => `${row.name} ${numeral(row.x, 3)}, ${numeral(row.error, 2)}`);
+    const values = rows.filter((row) => row.kind === 'now')
+                       .map((row) => `${row.name} ${numeral(row.x, 3)}, ${numeral(row.error, 2)}`);
     byId('chart').setAttribute('aria-label', say('chart.alt', {view: say('view.' + name), values: values.join('; ')}));
-    if (answered && METHODS.every((method) => results[method]?.answer)) Charts.draw(byId('chart'), name, titles, rows).catch(console.error);
+    if (answered && METHODS.every((method) => results[method]?.answer))
+      Charts.draw(byId('chart'), name, titles, rows).catch(console.error);
   }
 
   let drawing = 0;
   /** Shows all once per frame of the screen, however many answers came. */
   function show() {
     if (drawing) return;
-    drawing = requestAnimationFrame(() => { drawing = 0; show_columns(); show_picture(); show_arrow(); show_chart(); });
+    drawing = requestAnimationFrame(() => {
+      drawing = 0;
+      show_columns();
+      show_picture();
+      show_arrow();
+      show_chart();
+    });
   }
 
   /** Words for those who hear the page, the address and the commands: once it is quiet. */
   function after_change() {
     clearTimeout(timer);
     timer = setTimeout(async () => {
-      if (METHODS.some((method) => Solver.busy(method, 'main'))) { after_change(); return; }
-      if (answered) byId('live').textContent = METHODS.map((method) => {
-        const {answer} = results[method] ?? {}, step = last_step(answer);
-        if (!step) return say('live.failed', {method: say(method), status: say(answer?.result ? 'status.' + answer.result.status : 'stopped')});
-        const {newton, factorizations} = answer.result.cost.counts;
-        return say('live', {method: say(method), answer: `${what()} ${numeral(judged(answer))}`, error: error_of(answer).words, newton, factorisations: factorizations});
-      }).join(' ');
+      if (METHODS.some((method) => Solver.busy(method, 'main'))) {
+        after_change();
+        return;
+      }
+      if (answered)
+        byId('live').textContent = METHODS
+                                       .map((method) => {
+                                         const {answer} = results[method] ?? {}, step = last_step(answer);
+                                         if (!step)
+                                           return say('live.failed', {
+                                             method: say(method),
+                                             status: say(answer?.result ? 'status.' + answer.result.status : 'stopped')
+                                           });
+                                         const {newton, factorizations} = answer.result.cost.counts;
+                                         return say('live', {
+                                           method: say(method),
+                                           answer: `${what()} ${numeral(judged(answer))}`,
+                                           error: error_of(answer).words,
+                                           newton,
+                                           factorisations: factorizations
+                                         });
+                                       })
+                                       .join(' ');
       show_commands();
       const hash = await address();
-      try { history.replaceState(null, '', hash); } catch { /* a file:// page in a browser that forbids it */ }
+      try {
+        history.replaceState(null, '', hash);
+      } catch { /* a file:// page in a browser that forbids it */
+      }
     }, settled);
   }
 
   const quoted = (text) => /^[\w./=+-]+$/.test(text) ? text : `'${text}'`;
 
   function show_commands() {
-    const lines = METHODS.map((method) => ['build/release/stickslip run', scene.source.path, '-m', method,
-        ...[...Scenes.knob(scene, method), ...Scenes.overrides(scene)].map((one) => '--set ' + quoted(one))].join(' '));
+    const lines = METHODS.map(
+        (method) => ['build/release/stickslip run', scene.source.path, '-m', method,
+                     ...[...Scenes.knob(scene, method), ...Scenes.overrides(scene)].map(
+                         (one) => '--set ' + quoted(one))]
+                        .join(' '));
     byId('save-first').hidden = !scene.source.edited;
     byId('commands').textContent = lines.join('\n');
     byId('file-name').textContent = say('terminal.file', {name: scene.source.path});
@@ -358,14 +453,25 @@ const Page = (() => {
   }
 
   async function address() {
-    const values = {lesson: scene.lesson?.id, response: shown.response, by: shown.parameter, shown: shown.derivative ? 'derivative' : null,
-                    view: shown.view, drawn: shown.drawn, accuracy: shown.accuracy, knob: scene.knob};
-    if (!scene.lesson) values[scene.source.edited ? 'scene' : 'file'] = scene.source.edited ? await Link.pack(scene.source.text) : scene.source.path;
-    for (const control of Object.values(scene.controls)) if (control.value !== control.initial) values['c.' + control.name] = control.value;
+    const values = {
+      lesson: scene.lesson?.id,
+      response: shown.response,
+      by: shown.parameter,
+      shown: shown.derivative ? 'derivative' : null,
+      view: shown.view,
+      drawn: shown.drawn,
+      accuracy: shown.accuracy,
+      knob: scene.knob
+    };
+    if (!scene.lesson)
+      values[scene.source.edited ? 'scene' : 'file'] =
+          scene.source.edited ? await Link.pack(scene.source.text) : scene.source.path;
+    for (const control of Object.values(scene.controls))
+      if (control.value !== control.initial) values['c.' + control.name] = control.value;
     return Link.write(values);
   }
 
-  // ---- what changes -----------------------------------------------------------------------------------------------------
+  // ---- what changes ----------------------------------------------------------------------------------------------
 
   /** A control was moved. */
   function changed() {
@@ -408,7 +514,8 @@ const Page = (() => {
 
   /** Shows a scene: reads it, makes its controls, solves. `given`: of the address. */
   async function open(source, lesson, given = {}) {
-    const answer = await Editor.check(source.text, source.path.split('/').at(-1), source.edited ? 'check' : 'monolithic_al');
+    const answer =
+        await Editor.check(source.text, source.path.split('/').at(-1), source.edited ? 'check' : 'monolithic_al');
     if (!answer) return;
     if (!answer.document || !Editor.bears(answer.size)) {
       Editor.set(source.text);
@@ -426,10 +533,15 @@ const Page = (() => {
     }
     const responses = Object.keys(answer.document.responses ?? {}), parameters = Derivative.movable(answer.document);
     const among = (names, ...wanted) => wanted.find((name) => names.includes(name)) ?? names[0];
-    shown = {response: among(responses, given.response, lesson?.response), parameter: among(parameters, given.by, lesson?.parameter, 'mu'),
-             derivative: (given.shown ?? lesson?.shown) === 'derivative' && parameters.length > 0,
-             view: among(['cost', 'steps', 'contact'], given.view, lesson?.view), drawn: among(METHODS, given.drawn, 'monolithic_al'),
-             accuracy: number(given.accuracy ?? -3) ?? -3, step: null};
+    shown = {
+      response: among(responses, given.response, lesson?.response),
+      parameter: among(parameters, given.by, lesson?.parameter, 'mu'),
+      derivative: (given.shown ?? lesson?.shown) === 'derivative' && parameters.length > 0,
+      view: among(['cost', 'steps', 'contact'], given.view, lesson?.view),
+      drawn: among(METHODS, given.drawn, 'monolithic_al'),
+      accuracy: number(given.accuracy ?? -3) ?? -3,
+      step: null
+    };
     results = {};
     reference = {key: '', answer: null};
     trail = [];
@@ -441,11 +553,17 @@ const Page = (() => {
     byId('accuracy').value = shown.accuracy;
     byId('scene-title').textContent = answer.document.title ?? (lesson ? say(lesson.id + '.name') : source.path);
     document.body.classList.toggle('unanswered', !answered);
-    Lessons.draw(lesson, answered, () => { answered = true; document.body.classList.remove('unanswered'); show(); after_change(); });
+    Lessons.draw(lesson, answered, () => {
+      answered = true;
+      document.body.classList.remove('unanswered');
+      show();
+      after_change();
+    });
     Editor.set(source.text);
     byId('arrow').hidden = true;
     byId('picture').replaceChildren();
-    Panel.draw_columns(byId('columns'), shown.drawn, (method) => choose({drawn: method}), (method) => Solver.stop(method));
+    Panel.draw_columns(
+        byId('columns'), shown.drawn, (method) => choose({drawn: method}), (method) => Solver.stop(method));
     Panel.draw_controls(byId('controls'), scene, changed);
     Panel.show_values(byId('controls'), scene);
     show_switches();
@@ -461,8 +579,11 @@ const Page = (() => {
   async function open_address() {
     const given = Link.read();
     if (given.scene) return open({path: 'scene.json', text: await Link.unpack(given.scene), edited: true}, null, given);
-    if (given.json) return open({path: 'scene.json', text: JSON.stringify(JSON.parse(given.json), null, 1), edited: true}, null, given);
-    if (given.file && Scenes.shipped[given.file]) return open({path: given.file, text: Scenes.shipped[given.file], edited: false}, null, given);
+    if (given.json)
+      return open(
+          {path: 'scene.json', text: JSON.stringify(JSON.parse(given.json), null, 1), edited: true}, null, given);
+    if (given.file && Scenes.shipped[given.file])
+      return open({path: given.file, text: Scenes.shipped[given.file], edited: false}, null, given);
     return open_lesson(given.lesson ?? 'play', given);
   }
 
@@ -472,7 +593,11 @@ const Page = (() => {
       const age = Solver.busy(method, 'main') ? Solver.age(method) : 0, {done, steps} = results[method]?.progress ?? {};
       const seconds = numeral(Math.floor(age));
       if (results[method]?.answer && Panel.show_stale(byId('columns'), method, is_stale(method))) show();
-      Panel.show_progress(byId('columns'), method, age < 1 ? '' : done ? say('solving', {done, steps, seconds}) : say('waiting', {seconds}));
+      Panel.show_progress(
+          byId('columns'), method,
+          age < 1 ? '' :
+          done    ? say('solving', {done, steps, seconds}) :
+                    say('waiting', {seconds}));
     }
   }
 
@@ -486,25 +611,41 @@ const Page = (() => {
     byId('parameter').addEventListener('change', (event) => choose({parameter: event.target.value}));
     byId('shown').addEventListener('change', (event) => choose({derivative: event.target.value === 'derivative'}));
     byId('accuracy').addEventListener('input', (event) => choose({accuracy: Number(event.target.value)}));
-    byId('step').addEventListener('input', (event) => { shown.step = Number(event.target.value) === Number(event.target.max) ? null : Number(event.target.value); show(); });
+    byId('step').addEventListener('input', (event) => {
+      shown.step = Number(event.target.value) === Number(event.target.max) ? null : Number(event.target.value);
+      show();
+    });
     byId('sweep').addEventListener('click', start_sweep);
     byId('print').addEventListener('click', () => print());
     byId('copy-link').addEventListener('click', async () => {
       const url = location.href.replace(/#.*/, '') + await address();
-      try { history.replaceState(null, '', url); } catch { /* as above */ }
-      byId('live').textContent = await navigator.clipboard.writeText(url).then(() => say('link.copied'), () => say('link.failed'));
+      try {
+        history.replaceState(null, '', url);
+      } catch { /* as above */
+      }
+      byId('live').textContent =
+          await navigator.clipboard.writeText(url).then(() => say('link.copied'), () => say('link.failed'));
       byId('copy-link').textContent = byId('live').textContent;
-      setTimeout(() => { byId('copy-link').textContent = say('link.copy'); }, 2500);
+      setTimeout(() => {
+        byId('copy-link').textContent = say('link.copy');
+      }, 2500);
     });
-    for (const form of document.forms) if (form.id !== 'prediction') form.addEventListener('submit', (event) => event.preventDefault());
-    const notices = Panel.make('details', {}, Panel.make('summary', {}, say('footer.licences')), Panel.make('pre', {}, byId('notices').textContent));
-    byId('footer').append(Panel.make('p', {}, say('reference.words')), Panel.make('p', {}, say('footer', about)), notices);
+    for (const form of document.forms)
+      if (form.id !== 'prediction') form.addEventListener('submit', (event) => event.preventDefault());
+    const notices = Panel.make('details', {}, Panel.make('summary', {}, say('footer.licences')), Panel.make('pre'));
+    notices.addEventListener('toggle', () => {
+      notices.querySelector('pre').textContent = byId('notices').textContent;
+    });
+    byId('footer').append(
+        Panel.make('p', {}, say('reference.words')), Panel.make('p', {}, say('footer', about)), notices);
     Editor.start((source) => open(source, null));
     setInterval(show_progress, 250);
     addEventListener('hashchange', open_address);
     addEventListener('resize', show);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => scene && show());
-    Solver.compiled.catch((error) => { byId('scene-title').textContent = say('failed.browser', {why: error.message}); });
+    Solver.compiled.catch((error) => {
+      byId('scene-title').textContent = say('failed.browser', {why: error.message});
+    });
     open_address();
   }
 

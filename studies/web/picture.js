@@ -3,7 +3,9 @@
 const Picture = (() => {
   const NS = 'http://www.w3.org/2000/svg', WIDTH = 560, HEIGHT = 300, MARGIN = 26, MASS = 13;  // half a mass
   const STATES = ['stick', 'slip', 'closed', 'open'];
-  const SHADES = ['#f4f1de', '#d9e4a8', '#a8d483', '#6cbf80', '#3ba387', '#2a848c', '#31648c', '#3d4287', '#43176a'];  // the report's
+  const SHADES = [
+    '#f4f1de', '#d9e4a8', '#a8d483', '#6cbf80', '#3ba387', '#2a848c', '#31648c', '#3d4287', '#43176a'
+  ];                 // the report's
   let frame = null;  // {window, scale, ...} of the scene that is shown
   let moving = null;
 
@@ -34,7 +36,8 @@ const Picture = (() => {
 
   /** How many times as large displacements are drawn: 1 if they are seen anyway, or matter. */
   function magnification(picture, scene) {
-    const has_offset = Object.values(scene.document.contacts ?? {}).some((contact) => contact.offset);  // which is not magnified
+    const has_offset =
+        Object.values(scene.document.contacts ?? {}).some((contact) => contact.offset);  // which is not magnified
     if (picture.finite || lumped(picture) || has_offset) return 1;
     const [low, high] = box_of(picture.points), extent = Math.hypot(high[0] - low[0], high[1] - low[1]);
     const largest = Math.max(...picture.displacement.map((u) => Math.hypot(u[0], u[1])));
@@ -45,7 +48,11 @@ const Picture = (() => {
 
   function box_of(points) {
     const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
-    for (const p of points) for (const k of [0, 1]) { low[k] = Math.min(low[k], p[k]); high[k] = Math.max(high[k], p[k]); }
+    for (const p of points)
+      for (const k of [0, 1]) {
+        low[k] = Math.min(low[k], p[k]);
+        high[k] = Math.max(high[k], p[k]);
+      }
     return [low, high];
   }
 
@@ -53,19 +60,26 @@ const Picture = (() => {
   function make_frame(picture, scene) {
     const given = scene.lesson?.window, times = magnification(picture, scene), points = [...picture.points];
     for (const step of [picture, ...(picture.frames ?? [])])
-      step.displacement.forEach((u, n) => points.push([picture.points[n][0] + times * u[0], picture.points[n][1] + times * u[1]]));
+      step.displacement.forEach(
+          (u, n) => points.push([picture.points[n][0] + times * u[0], picture.points[n][1] + times * u[1]]));
     for (const obstacle of picture.obstacles) {
       if (obstacle.circle) {
         const [x, y] = obstacle.circle.center, r = obstacle.circle.radius;
         points.push([x - r, y - r], [x + r, y + r]);
-      } else if (lumped(picture)) points.push(...(obstacle.plane ? [obstacle.plane.point] : obstacle.polyline?.points ?? []));
+      } else if (lumped(picture))
+        points.push(...(obstacle.plane ? [obstacle.plane.point] : obstacle.polyline?.points ?? []));
     }
     let [low, high] = given ? [given.slice(0, 2), given.slice(2)] : box_of(points);
     const size = Math.max(high[0] - low[0], high[1] - low[1]) || 1;
     if (!given) {
       const air = lumped(picture) ? 0.35 * size : 0.06 * size;
-      low = [low[0] - air, low[1] - air]; high = [high[0] + air, high[1] + air];
-      if (high[1] - low[1] < 0.3 * size) { const middle = (low[1] + high[1]) / 2; low[1] = middle - 0.3 * size; high[1] = middle + 0.3 * size; }
+      low = [low[0] - air, low[1] - air];
+      high = [high[0] + air, high[1] + air];
+      if (high[1] - low[1] < 0.3 * size) {
+        const middle = (low[1] + high[1]) / 2;
+        low[1] = middle - 0.3 * size;
+        high[1] = middle + 0.3 * size;
+      }
     }
     const scale = Math.min((WIDTH - 2 * MARGIN) / (high[0] - low[0]), (HEIGHT - 2 * MARGIN) / (high[1] - low[1]));
     const middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
@@ -74,7 +88,8 @@ const Picture = (() => {
     return {times, scale, middle, low, high, size, strongest, fixed: Boolean(given)};
   }
 
-  const to_pixels = ([x, y]) => [WIDTH / 2 + (x - frame.middle[0]) * frame.scale, HEIGHT / 2 - (y - frame.middle[1]) * frame.scale];
+  const to_pixels =
+      ([x, y]) => [WIDTH / 2 + (x - frame.middle[0]) * frame.scale, HEIGHT / 2 - (y - frame.middle[1]) * frame.scale];
   const text_of = (points) => points.map((p) => to_pixels(p).map((x) => x.toFixed(1)).join(',')).join(' ');
 
   function arrow(from, to, attributes) {
@@ -83,14 +98,21 @@ const Picture = (() => {
     const head = Math.min(7, length / 2), [ex, ey] = [dx / length, dy / length];
     const back = [to[0] - head * ex, to[1] - head * ey], wide = head / 2;
     const path = `M${from.map((x) => x.toFixed(1))}L${back.map((x) => x.toFixed(1))}M${to.map((x) => x.toFixed(1))}` +
-        `L${(back[0] - wide * ey).toFixed(1)},${(back[1] + wide * ex).toFixed(1)}L${(back[0] + wide * ey).toFixed(1)},${(back[1] - wide * ex).toFixed(1)}Z`;
+                 `L${(back[0] - wide * ey).toFixed(1)},${(back[1] + wide * ex).toFixed(1)}L${
+                     (back[0] + wide * ey).toFixed(1)},${(back[1] - wide * ex).toFixed(1)}Z`;
     return element('path', {d: path, ...attributes});
   }
 
   /** A mark of a state, as in the report. */
   function mark(state, [x, y], size = 1) {
-    if (state === 'stick') return element('rect', {x: x - 3.5 * size, y: y - 3.5 * size, width: 7 * size, height: 7 * size, class: 'state stick'});
-    if (state === 'slip') return element('path', {d: `M${x},${y - 5 * size}L${x + 4.5 * size},${y + 3 * size}L${x - 4.5 * size},${y + 3 * size}Z`, class: 'state slip'});
+    if (state === 'stick')
+      return element(
+          'rect', {x: x - 3.5 * size, y: y - 3.5 * size, width: 7 * size, height: 7 * size, class: 'state stick'});
+    if (state === 'slip')
+      return element('path', {
+        d: `M${x},${y - 5 * size}L${x + 4.5 * size},${y + 3 * size}L${x - 4.5 * size},${y + 3 * size}Z`,
+        class: 'state slip'
+      });
     return element('circle', {cx: x, cy: y, r: 3 * size, class: 'state ' + state});
   }
 
@@ -102,18 +124,21 @@ const Picture = (() => {
       const e = [(b[0] - a[0]) / length, (b[1] - a[1]) / length], into = [-e[1], e[0]];
       let hatch = '';
       for (let s = 4; s < length; s += 9)
-        hatch += `M${(a[0] + s * e[0]).toFixed(1)},${(a[1] + s * e[1]).toFixed(1)}l${(7 * (into[0] - 0.7 * e[0])).toFixed(1)},${(7 * (into[1] - 0.7 * e[1])).toFixed(1)}`;
+        hatch += `M${(a[0] + s * e[0]).toFixed(1)},${(a[1] + s * e[1]).toFixed(1)}l${
+            (7 * (into[0] - 0.7 * e[0])).toFixed(1)},${(7 * (into[1] - 0.7 * e[1])).toFixed(1)}`;
       group.append(element('path', {d: hatch, class: 'hatch'}), element('path', {d: `M${a}L${b}`}));
     };
     const [kind, shape] = Object.entries(obstacle)[0], place = (p) => carried(shape.moved, p);
     if (kind === 'plane') {
-      const p = place(shape.point), n = shape.normal, far = 2 * (WIDTH + HEIGHT) / frame.scale, length = Math.hypot(...n);
+      const p = place(shape.point), n = shape.normal, far = 2 * (WIDTH + HEIGHT) / frame.scale,
+            length = Math.hypot(...n);
       const along = [n[1] / length * far, -n[0] / length * far];
       const p0 = [p[0] - along[0], p[1] - along[1]], p1 = plus(p, along);
       edge(p0, p1);
     } else if (kind === 'circle') {
       const [x, y] = to_pixels(place(shape.center));
-      group.append(element('circle', {cx: x, cy: y, r: shape.radius * frame.scale, class: shape.inside ? 'cup' : 'solid'}));
+      group.append(
+          element('circle', {cx: x, cy: y, r: shape.radius * frame.scale, class: shape.inside ? 'cup' : 'solid'}));
     } else if (kind === 'polyline') {
       const points = shape.points.map(place);
       for (let i = 0; i + 1 < points.length; ++i) edge(points[i], points[i + 1]);
@@ -152,15 +177,25 @@ const Picture = (() => {
       const corners = {8: 4, 6: 3}[nodes.length] ?? nodes.length, at = nodes.slice(0, corners).map((n) => places[n]);
       if (corners === 2) {
         const same = picture.points[nodes[0]].every((x, k) => x === picture.points[nodes[1]][k]);
-        if (!same) { group.append(element('polyline', {points: text_of(at), class: 'bar'})); return; }
-        group.append(draw_spring(plus(to_pixels(at[0]), stands[nodes[0]] ?? [0, 0]), plus(to_pixels(at[1]), stands[nodes[0]] ?? [0, 0])));
-        const [ax, ay] = plus(to_pixels(at[1]), stands[nodes[0]] ?? [0, 0]), [x, y] = plus(to_pixels(at[0]), stands[nodes[0]] ?? [0, 0]);
-        group.append(element('circle', {cx: ax, cy: ay, r: 4, class: 'anchor'}),
-                     element('rect', {x: x - MASS, y: y - MASS, width: 2 * MASS, height: 2 * MASS, rx: 3, class: 'mass'}));
+        if (!same) {
+          group.append(element('polyline', {points: text_of(at), class: 'bar'}));
+          return;
+        }
+        group.append(draw_spring(
+            plus(to_pixels(at[0]), stands[nodes[0]] ?? [0, 0]), plus(to_pixels(at[1]), stands[nodes[0]] ?? [0, 0])));
+        const [ax, ay] = plus(to_pixels(at[1]), stands[nodes[0]] ?? [0, 0]),
+                   [x, y] = plus(to_pixels(at[0]), stands[nodes[0]] ?? [0, 0]);
+        group.append(
+            element('circle', {cx: ax, cy: ay, r: 4, class: 'anchor'}),
+            element('rect', {x: x - MASS, y: y - MASS, width: 2 * MASS, height: 2 * MASS, rx: 3, class: 'mass'}));
         return;
       }
-      const shade = most > 0 ? SHADES[Math.min(SHADES.length - 1, Math.floor(SHADES.length * picture.von_mises[e] / most))] : SHADES[0];
-      paths.set(shade, (paths.get(shade) ?? '') + 'M' + at.map((p) => to_pixels(p).map((x) => x.toFixed(1)).join(',')).join('L') + 'Z');
+      const shade = most > 0 ?
+                        SHADES[Math.min(SHADES.length - 1, Math.floor(SHADES.length * picture.von_mises[e] / most))] :
+                        SHADES[0];
+      paths.set(
+          shade, (paths.get(shade) ?? '') + 'M' +
+                     at.map((p) => to_pixels(p).map((x) => x.toFixed(1)).join(',')).join('L') + 'Z');
     });
     for (const [shade, d] of paths) group.append(element('path', {d, fill: shade, class: 'elements'}));
     return group;
@@ -173,10 +208,12 @@ const Picture = (() => {
     let base = null, tip = null, per_pixel = 0;
     const direction = drag.axis === 0 ? [1, 0] : [0, -1];
     if (drag.kind === 'force') {
-      const mass = plus(to_pixels(places[drag.node]), stands[drag.node] ?? [0, 0]), side = drag.push ? -drag.sign : drag.sign;
+      const mass = plus(to_pixels(places[drag.node]), stands[drag.node] ?? [0, 0]),
+            side = drag.push ? -drag.sign : drag.sign;
       const along = (way) => [mass[0] + direction[0] * side * way, mass[1] + direction[1] * side * way];
       base = along(MASS);
-      tip = along(MASS + 8 + length * Math.abs(control.value) / span);  // where the hand is: behind a push, before a pull
+      tip =
+          along(MASS + 8 + length * Math.abs(control.value) / span);  // where the hand is: behind a push, before a pull
       per_pixel = side * span / length;
     } else {
       const place = drag.kind === 'node' ? places[drag.node] : [...drag.place];
@@ -184,19 +221,28 @@ const Picture = (() => {
       tip = plus(to_pixels(place), drag.kind === 'node' ? stands[drag.of ?? drag.node] ?? [0, 0] : [0, 0]);
       per_pixel = 1 / frame.scale;
     }
-    const group = element('g', {class: 'handle ' + drag.kind, tabindex: 0, role: 'slider', 'aria-valuemin': control.from,
-                                'aria-valuemax': control.to, 'aria-valuenow': control.value,
-                                'aria-label': Words.say('drag', {name: Panel.name_of(scene, control)})});
+    const group = element('g', {
+      class: 'handle ' + drag.kind,
+      tabindex: 0,
+      role: 'slider',
+      'aria-valuemin': control.from,
+      'aria-valuemax': control.to,
+      'aria-valuenow': control.value,
+      'aria-label': Words.say('drag', {name: Panel.name_of(scene, control)})
+    });
     if (base) group.append(drag.push ? arrow(tip, base, {class: 'force'}) : arrow(base, tip, {class: 'force'}));
     if (base && !drag.push) tip = plus(tip, [8 * Math.sign(tip[0] - base[0]), 8 * Math.sign(tip[1] - base[1])]);
-    group.append(element('circle', {cx: tip[0], cy: tip[1], r: 16, class: 'reach'}), element('circle', {cx: tip[0], cy: tip[1], r: 7, class: 'grip'}));
+    group.append(
+        element('circle', {cx: tip[0], cy: tip[1], r: 16, class: 'reach'}),
+        element('circle', {cx: tip[0], cy: tip[1], r: 7, class: 'grip'}));
     const set = (value) => {
       const stepped = Math.round((value - control.from) / control.step) * control.step + control.from;
       on_move(control, +Math.min(control.to, Math.max(control.from, stepped)).toPrecision(12));
     };
     group.addEventListener('pointerdown', (event) => {
       event.preventDefault();
-      moving = {control: control.name, set, start: control.value, x: event.clientX, y: event.clientY, per_pixel, direction};
+      moving =
+          {control: control.name, set, start: control.value, x: event.clientX, y: event.clientY, per_pixel, direction};
     });
     group.addEventListener('keydown', (event) => {
       const steps = {ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10}[event.key];
@@ -213,19 +259,26 @@ const Picture = (() => {
     if (!moving) return;
     const box = document.querySelector('#picture svg')?.getBoundingClientRect();
     const ratio = box ? WIDTH / box.width : 1;
-    const way = ((event.clientX - moving.x) * moving.direction[0] + (event.clientY - moving.y) * moving.direction[1]) * ratio;
+    const way =
+        ((event.clientX - moving.x) * moving.direction[0] + (event.clientY - moving.y) * moving.direction[1]) * ratio;
     moving.set(moving.start + way * moving.per_pixel);
   });
-  for (const end of ['pointerup', 'pointercancel']) addEventListener(end, () => { moving = null; });
+  for (const end of ['pointerup', 'pointercancel'])
+    addEventListener(end, () => {
+      moving = null;
+    });
 
-  /** Draws a scene into a place. `whole`: picture of the answer; `step`: which of its frames; `key`: while it stays, the
-      window stays too. */
+  /**
+     Draws a scene into a place. `whole`: picture of the answer; `step`: which of its frames; `key`: while it stays,
+     the window stays too.
+   */
   function draw(place, scene, whole, step, key, words, on_move) {
     const picture = at_step(whole, step);
     if (!frame || frame.scene !== scene || frame.key !== key) frame = {...make_frame(whole, scene), scene, key};
     frame.strongest = Math.max(frame.strongest, ...(picture.traction ?? []).map((t) => Math.hypot(t[0], t[1])));
     frame.times = magnification(whole, scene);
-    const places = picture.points.map((x, n) => [x[0] + frame.times * picture.displacement[n][0], x[1] + frame.times * picture.displacement[n][1]]);
+    const places = picture.points.map(
+        (x, n) => [x[0] + frame.times * picture.displacement[n][0], x[1] + frame.times * picture.displacement[n][1]]);
     const focused = document.activeElement?.closest('.handle')?.dataset.control;
     const svg = element('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'group', 'aria-label': words});
     const drawing = element('g', {'aria-hidden': 'true'});
@@ -234,7 +287,14 @@ const Picture = (() => {
     drawing.append(draw_bodies(picture, places, stands));
     const longest = 70, arrows = element('g', {class: 'tractions'}), marks = element('g');
     const visible = picture.contact.map((c) => to_pixels(places[c.node]));
-    const close = visible.length > 1 ? Math.min(1, Math.max(0.45, median(visible.slice(1).map((p, i) => Math.hypot(p[0] - visible[i][0], p[1] - visible[i][1]))) / 9)) : 1.3;
+    const close =
+        visible.length > 1 ?
+            Math.min(
+                1, Math.max(
+                       0.45,
+                       median(visible.slice(1).map((p, i) => Math.hypot(p[0] - visible[i][0], p[1] - visible[i][1]))) /
+                           9)) :
+            1.3;
     picture.contact.forEach((c, p) => {
       const t = picture.traction?.[p], at = visible[p];
       if (t && frame.strongest > 0) {

@@ -28,8 +28,9 @@ const Scenes = (() => {
       controls.friction = {pointers, from: 0, to: Math.max(1, short(2 * first)), step: 0.01};
     }
     const loads = {}, add = (pointer, value) => {
-      if (typeof value === 'number') { if (value !== 0) loads[pointer] = value; }
-      else if (Array.isArray(value)) value.forEach((part, i) => add(`${pointer}/${i}`, part));
+      if (typeof value === 'number') {
+        if (value !== 0) loads[pointer] = value;
+      } else if (Array.isArray(value)) value.forEach((part, i) => add(`${pointer}/${i}`, part));
     };
     (document.loads ?? []).forEach((load, i) => {
       for (const kind of ['force', 'traction', 'pressure', 'body_force']) add(`/loads/${i}/${kind}`, load[kind]);
@@ -41,7 +42,8 @@ const Scenes = (() => {
       });
     if (Object.keys(loads).length) controls.load = {pointers: loads, from: 0, to: 2, step: 0.02, factor: true};
     const time = document.time ?? {};
-    if (Number.isInteger(time.steps)) controls.steps = {pointers: {'/time/steps': 1}, from: 1, to: Math.max(20, 2 * time.steps), step: 1};
+    if (Number.isInteger(time.steps))
+      controls.steps = {pointers: {'/time/steps': 1}, from: 1, to: Math.max(20, 2 * time.steps), step: 1};
     else if (Array.isArray(time.legs) && !time.control) {
       const least = Math.min(...time.legs.map((leg) => leg[1]));
       const pointers = Object.fromEntries(time.legs.map((leg, i) => [`/time/legs/${i}/1`, leg[1] / least]));
@@ -60,14 +62,22 @@ const Scenes = (() => {
       const normal = obstacle.plane?.normal ?? [0, 1], axis = Math.abs(normal[0]) > Math.abs(normal[1]) ? 0 : 1;
       const pointer = `${base}/${obstacle.plane ? 'plane/point' : 'circle/center'}/${axis}`;
       const step = Number((10 ** Math.floor(Math.log10(extent / 100))).toPrecision(1));
-      places['place ' + name] = {pointers: {[pointer]: 1}, from: short(place[axis] - 30 * step), to: short(place[axis] + 30 * step), step,
-                                 place: name, drag: {control: 'place ' + name, kind: 'obstacle', place, axis}};
+      places['place ' + name] = {
+        pointers: {[pointer]: 1},
+        from: short(place[axis] - 30 * step),
+        to: short(place[axis] + 30 * step),
+        step,
+        place: name,
+        drag: {control: 'place ' + name, kind: 'obstacle', place, axis}
+      };
     }
     return places;
   }
 
-  /** A scene that is ready: `source` {path, text, edited}, `lesson`: its entry of lessons.json, `document`: as read,
-      `size`: of it. */
+  /**
+     A scene that is ready: `source` {path, text, edited}, `lesson`: its entry of lessons.json, `document`: as read,
+      `size`: of it.
+   */
   function make(source, lesson, document, size) {
     const controls = {};
     for (const [name, given] of Object.entries(lesson?.controls ?? controls_of(document, size.extent))) {
@@ -83,7 +93,15 @@ const Scenes = (() => {
     }
     for (const [name, value] of Object.entries(lesson?.set ?? {})) controls[name].value = value;
     const drags = lesson ? lesson.drags ?? [] : Object.values(controls).flatMap((control) => control.drag ?? []);
-    return {source, lesson, document, controls, drags, knob: lesson?.knob?.value ?? null, knob_range: [lesson?.knob?.from ?? -3, lesson?.knob?.to ?? 8]};
+    return {
+      source,
+      lesson,
+      document,
+      controls,
+      drags,
+      knob: lesson?.knob?.value ?? null,
+      knob_range: [lesson?.knob?.from ?? -3, lesson?.knob?.to ?? 8]
+    };
   }
 
   /** "POINTER=VALUE" of every control that was moved. `more`: {pointer: value} on top. */
@@ -96,7 +114,8 @@ const Scenes = (() => {
     for (const control of Object.values(scene.controls)) {
       if (control.value === control.initial) continue;
       if (control.choices)
-        for (const [pointer, value] of Object.entries(control.choices[control.value])) values[pointer] = JSON.stringify(value);
+        for (const [pointer, value] of Object.entries(control.choices[control.value]))
+          values[pointer] = JSON.stringify(value);
       else
         for (const [pointer, weight] of Object.entries(control.pointers)) {
           const value = control.value * weight;

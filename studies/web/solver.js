@@ -21,10 +21,17 @@ const Solver = (() => {
     workers.set(name, worker);
     compiled.then((module) => worker.thread.postMessage({module, files}));
     worker.thread.addEventListener('message', ({data}) => {
-      if (data.ready) { worker.ready = true; send(worker); return; }
+      if (data.ready) {
+        worker.ready = true;
+        send(worker);
+        return;
+      }
       const task = worker.running;
       if (!task || data.id !== task.id) return;
-      if (data.code === undefined) { task.on_step?.(data.done, data.steps); return; }
+      if (data.code === undefined) {
+        task.on_step?.(data.done, data.steps);
+        return;
+      }
       worker.running = null;
       task.resolve(data);
       if (data.dead) stop(name);
@@ -81,7 +88,9 @@ const Solver = (() => {
   }
 
   /** Starts workers before there is a request for them. */
-  const warm = (...names) => { for (const name of names) start(name); };
+  const warm = (...names) => {
+    for (const name of names) start(name);
+  };
 
   return {ask, stop, age, busy, add_file, warm, compiled};
 })();

@@ -21,7 +21,8 @@ const Words = (() => {
   /** Puts words where the page asks for them. */
   function fill(within = document) {
     for (const place of within.querySelectorAll('[data-word]')) place.textContent = say(place.dataset.word);
-    for (const place of within.querySelectorAll('[data-label]')) place.setAttribute('aria-label', say(place.dataset.label));
+    for (const place of within.querySelectorAll('[data-label]'))
+      place.setAttribute('aria-label', say(place.dataset.label));
     document.documentElement.lang = words.language;
     document.title = say('title');
   }

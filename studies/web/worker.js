@@ -3,10 +3,16 @@
 // {ready}, {id, done, steps} after steps, and {id, code, answer, milliseconds}; with `dead` it answers nothing more.
 
 const solver = (async () => {
-  const {data: {module, files}} = await new Promise((got) => { self.addEventListener('message', got, {once: true}); });
+  const {data: {module, files}} = await new Promise((got) => {
+    self.addEventListener('message', got, {once: true});
+  });
   const stickslip = await createStickslip({
-    instantiateWasm(imports, take) { WebAssembly.instantiate(module, imports).then((instance) => take(instance)); return {}; },
-    print() {}, printErr() {},
+    instantiateWasm(imports, take) {
+      WebAssembly.instantiate(module, imports).then((instance) => take(instance));
+      return {};
+    },
+    print() {},
+    printErr() {},
   });
   for (const [name, text] of Object.entries(files)) stickslip.FS.writeFile(name, text);
   const scene = stickslip.cwrap('stickslip_scene', 'number', ['string']);
@@ -31,4 +37,6 @@ const solver = (async () => {
     }
   };
 })();
-self.addEventListener('message', ({data}) => { if (data.request) solver.then((run) => run(data)); });
+self.addEventListener('message', ({data}) => {
+  if (data.request) solver.then((run) => run(data));
+});
