@@ -7,8 +7,8 @@ import {gzipSync} from 'node:zlib';
 const [source, glue, module, version_header, language, page] = process.argv.slice(2);
 const web = join(source, 'studies/web'), vega = join(source, 'third_party/vega');
 const read = (...path) => readFileSync(join(...path), 'utf8');
-const scripts = ['words.js', 'solver.js', 'scene.js', 'picture.js', 'panel.js', 'charts.js', 'derivative.js', 'link.js',
-                 'editor.js', 'lessons.js', 'main.js'];
+const scripts = ['words.js', 'solver.js', 'scene.js', 'state.js', 'picture.js', 'panel.js', 'charts.js', 'derivative.js',
+                 'answers.js', 'rows.js', 'show.js', 'ask.js', 'link.js', 'editor.js', 'lessons.js', 'main.js'];
 
 /** Texts inside of a <script> must not end it: code, JSON, and text that is only shown. */
 const inside = (text) => text.replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');

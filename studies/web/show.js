@@ -1,0 +1,238 @@
+'use strict';
+/** What is shown of the answers. */
+const Show = (() => {
+  const {say, numeral} = Words;
+  const METHODS = Scenes.METHODS;
+  const settled = 500;  // milliseconds without a change before words are read and the address is written
+  const byId = (id) => document.getElementById(id);
+  let timer = 0;
+
+  function show_columns() {
+    for (const method of METHODS) {
+      const {answer, code, less, more, of} = State.results[method] ?? {};
+      if (!answer) continue;
+      Panel.show_stale(byId('columns'), method, Answers.is_stale(method));
+      if (!answer.result) {
+        const status = answer.broken ? say('broken', {why: answer.broken}) :
+                       code === 4    ? say('stopped') :
+                                       say('faulty');
+        const words =
+            answer.cancelled ? say('stopped.words') : (answer.faults ?? []).map((fault) => fault.text).join(' ');
+        Panel.show_column(byId('columns'), method, status, true, [], words);
+        continue;
+      }
+      const {status, cost, steps, warnings, solutions, message} = answer.result;
+      const step = Answers.last_step(answer), is_good = Boolean(step);
+      const rows = [];
+      if (State.shown.derivative) {
+        const {value, sides} = Derivative.read(step, State.shown.response, State.shown.parameter);
+        if (sides) rows.push([say('below'), numeral(sides[0]), 'value'], [say('above'), numeral(sides[1]), 'value']);
+        else rows.push([say('derivative'), numeral(value), 'value']);
+        const low = Answers.response_of(less), high = Answers.response_of(more);
+        const difference =
+            less && of === State.shown.parameter ?
+                (high - low) / (2 * Derivative.step_of(answer.document, of, State.scene.lesson?.difference).step) :
+                NaN;
+        rows.push([say('difference'), less && of === State.shown.parameter ? numeral(difference) : '…', 'difference']);
+      } else {
+        rows.push([
+          say('answer'),
+          is_good ? numeral(step.responses[State.shown.response], 7) :
+                    say('failed-at', {time: numeral(steps.at(-1)?.time ?? 0, 4)}),
+          'value'
+        ]);
+      }
+      rows.push(
+          [say('error'), Answers.error_words(method), 'error'], [say('newton'), numeral(cost.counts.newton), 'newton']);
+      if (method === 'uzawa_al') rows.push([say('augmentations'), numeral(cost.counts.augmentations), 'augmentations']);
+      rows.push(
+          [say('factorisations'), numeral(cost.counts.factorizations), 'factorizations'],
+          [say('milliseconds'), numeral(1000 * cost.seconds.total, 2), 'milliseconds']);
+      const others = (solutions ?? []).map((other) => numeral(other.responses[State.shown.response], 4));
+      const extra = warnings.some((warning) => warning.code === 'non_unique') ?
+                        say('warning.non_unique', {others: others.join('; ')}) :
+                    is_good ? '' :
+                              message;
+      Panel.show_column(byId('columns'), method, say('status.' + status), !is_good, rows, extra);
+    }
+  }
+
+  /** A picture before anything happened: what a learner predicts from. */
+  const before = (picture) => ({
+    ...picture,
+    ...(picture.frames?.[0] && {obstacles: picture.frames[0].obstacles}),
+    frames: [],
+    traction: [],
+    displacement: picture.displacement.map((u) => u.map(() => 0)),
+    von_mises: picture.von_mises.map(() => 0),
+    contact: picture.contact.map((point) => ({...point, state: 'open'})),
+  });
+
+  function show_picture() {
+    const solved = State.results[State.shown.drawn]?.answer?.picture;
+    if (!solved) return;
+    const picture = State.answered ? solved : before(solved);
+    const frames = picture.frames ?? [];
+    byId('time').hidden = frames.length < 3;
+    const step = byId('step');
+    step.max = frames.length - 1;
+    const index = State.shown.step === null ? frames.length - 1 : Math.min(State.shown.step, frames.length - 1);
+    step.value = index;
+    const frame = frames[index];
+    if (frame)
+      byId('step-words').textContent =
+          say('time.at', {step: frame.step, steps: frames.at(-1).step, time: numeral(frame.time, 3)});
+    const counts = {open: 0, stick: 0, slip: 0, closed: 0};
+    for (const point of (frame ?? picture).contact) ++counts[point.state];
+    const words = say('picture.alt', {method: say(State.shown.drawn), ...counts, slip: counts.slip + counts.closed});
+    const times =
+        Picture.draw(byId('picture'), State.scene, picture, frame?.step, State.answered, words, (control, value) => {
+          if (control.value === value) return;
+          control.value = value;
+          Page.changed();
+        });
+    Picture.legend(byId('legend'));
+    if (State.answered)
+      byId('legend').append(
+          ' ' + say('drawn', {method: say(State.shown.drawn)}),
+          times === 1 ? '' : ' ' + say('magnified', {times: numeral(times)}));
+  }
+
+  function show_arrow() {
+    const {answer, less, more, of} = State.results[State.shown.drawn] ?? {};
+    const fits = State.shown.derivative && less && of === State.shown.parameter && Answers.last_step(answer);
+    byId('arrow').hidden = !fits;
+    if (!fits) return;
+    const {value, step} = Derivative.step_of(answer.document, of, State.scene.lesson?.difference);
+    const slope = Derivative.read(Answers.last_step(answer), State.shown.response, of);
+    Derivative.draw(
+        byId('arrow'), {
+          value,
+          step,
+          response: Answers.response_of(answer),
+          less: Answers.response_of(less),
+          more: Answers.response_of(more)
+        },
+        slope, {response: State.shown.response, parameter: of});
+  }
+
+  function show_verdict(rows) {
+    const best = {};
+    for (const row of rows.filter(
+             (row) => row.method && row.kind !== 'trail' && row.error <= 10 ** State.shown.accuracy))
+      if (!best[row.method] || row.x < best[row.method].x) best[row.method] = row;
+    const order = Object.values(best).sort((a, b) => a.x - b.x), accuracy = numeral(10 ** State.shown.accuracy);
+    byId('accuracy-words').textContent = accuracy;
+    if (!order.length) {
+      byId('verdict').textContent = say('verdict.none', {accuracy});
+      return;
+    }
+    const others = [
+      ...order.slice(1).map((row) => say('verdict.other', {method: say(row.method), work: numeral(row.x, 3)})),
+      ...METHODS.filter((method) => !best[method]).map((method) => say('verdict.not', {method: say(method)}))
+    ];
+    const knob =
+        order[0].power === null ? say('control.knob.auto') : numeral(Number((10 ** order[0].power).toPrecision(3)), 3);
+    byId('verdict').textContent =
+        say('verdict',
+            {accuracy, method: say(order[0].method), knob, work: numeral(order[0].x, 3), others: others.join(' ')});
+  }
+
+  function show_chart() {
+    const name = State.shown.view, rows = Rows[name]();
+    const by = State.scene.lesson?.x && State.scene.lesson.x !== State.shown.response ? State.scene.lesson.x :
+                                                                                        say('chart.time');
+    const titles = {
+      cost: {x: say('chart.work'), y: say('chart.error', {what: Answers.what()})},
+      steps: {x: by, y: Answers.what()},
+      contact: {x: say('chart.place'), y: say('chart.traction')}
+    }[name];
+    byId('cost').hidden = name !== 'cost';
+    if (name === 'cost') show_verdict(rows);
+    const values = rows.filter((row) => row.kind === 'now')
+                       .map((row) => `${row.name} ${numeral(row.x, 3)}, ${numeral(row.error, 2)}`);
+    byId('chart').setAttribute('aria-label', say('chart.alt', {view: say('view.' + name), values: values.join('; ')}));
+    if (State.answered && METHODS.every((method) => State.results[method]?.answer))
+      Charts.draw(byId('chart'), name, titles, rows).catch(console.error);
+  }
+
+  let drawing = 0;
+  /** Shows all once per frame of the screen, however many answers came. */
+  function show() {
+    if (drawing) return;
+    drawing = requestAnimationFrame(() => {
+      drawing = 0;
+      show_columns();
+      show_picture();
+      show_arrow();
+      show_chart();
+    });
+  }
+
+  /** Words for those who hear the page, the address and the commands: once it is quiet. */
+  function after_change() {
+    clearTimeout(timer);
+    timer = setTimeout(async () => {
+      if (METHODS.some((method) => Solver.busy(method, 'main'))) {
+        after_change();
+        return;
+      }
+      if (State.answered)
+        byId('live').textContent = METHODS
+                                       .map((method) => {
+                                         const {answer} = State.results[method] ?? {}, step = Answers.last_step(answer);
+                                         if (!step)
+                                           return say('live.failed', {
+                                             method: say(method),
+                                             status: say(answer?.result ? 'status.' + answer.result.status : 'stopped')
+                                           });
+                                         const {newton, factorizations} = answer.result.cost.counts;
+                                         return say('live', {
+                                           method: say(method),
+                                           answer: `${Answers.what()} ${numeral(Answers.judged(answer))}`,
+                                           error: Answers.error_of(answer).words,
+                                           newton,
+                                           factorisations: factorizations
+                                         });
+                                       })
+                                       .join(' ');
+      show_commands();
+      const hash = await Page.address();
+      try {
+        history.replaceState(null, '', hash);
+      } catch { /* a file:// page in a browser that forbids it */
+      }
+    }, settled);
+  }
+
+  const quoted = (text) => /^[\w./=+-]+$/.test(text) ? text : `'${text}'`;
+
+  function show_commands() {
+    const lines = METHODS.map(
+        (method) => ['build/release/stickslip run', State.scene.source.path, '-m', method,
+                     ...[...Scenes.knob(State.scene, method), ...Scenes.overrides(State.scene)].map(
+                         (one) => '--set ' + quoted(one))]
+                        .join(' '));
+    byId('save-first').hidden = !State.scene.source.edited;
+    byId('commands').textContent = lines.join('\n');
+    byId('file-name').textContent = say('terminal.file', {name: State.scene.source.path});
+    byId('file').textContent = State.scene.source.text;
+  }
+
+  /** Every quarter of a second: how far the methods are that take long. */
+  function show_progress() {
+    for (const method of State.scene ? METHODS : []) {
+      const age = Solver.busy(method, 'main') ? Solver.age(method) : 0,
+            {done, steps} = State.results[method]?.progress ?? {};
+      const seconds = numeral(Math.floor(age));
+      if (State.results[method]?.answer && Panel.show_stale(byId('columns'), method, Answers.is_stale(method))) show();
+      Panel.show_progress(
+          byId('columns'), method,
+          age < 1 ? '' :
+          done    ? say('solving', {done, steps, seconds}) :
+                    say('waiting', {seconds}));
+    }
+  }
+
+  return {all: show, chart: show_chart, progress: show_progress, after_change};
+})();
