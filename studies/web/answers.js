@@ -58,7 +58,7 @@ const Answers = (() => {
                                  {x: Math.max(work_of(answer), 1 / 30), y: Math.max(error, Charts.GROUND), error};
   }
 
-  /** Whether a method solves for long already what the controls say, so that its old numbers are to be told apart. */
+  /** Whether a method solves for long already what the controls say, so that its old numbers are dimmed. */
   const is_stale = (method) => State.results[method]?.version !== State.version && Solver.age(method) > 0.4;
 
   /** The error in words; while the answer or its reference is still to come, the last one that was known. */

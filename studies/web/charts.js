@@ -36,7 +36,7 @@ const Charts = (() => {
       field: 'x',
       type: 'quantitative',
       title: titles.x,
-      scale: {type: 'log', nice: false, padding: 70},
+      scale: {type: 'log', nice: false, padding: 80},
       axis: axis(titles.x)
     };
     const y = {

@@ -92,9 +92,10 @@ const Show = (() => {
           Page.changed();
         });
     Picture.legend(byId('legend'));
+    if (State.scene.drags.length) byId('legend').append(' · ', say('knobs'));
     if (State.answered)
       byId('legend').append(
-          ' ' + say('drawn', {method: say(State.shown.drawn)}),
+          ' · ' + say('drawn', {method: say(State.shown.drawn)}),
           times === 1 ? '' : ' ' + say('magnified', {times: numeral(times)}));
   }
 

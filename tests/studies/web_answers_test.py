@@ -28,7 +28,7 @@ def by_program(program, source, scene, method):
 
 def by_module(node, module, requests):
     lines = "".join(json.dumps(request) + "\n" for request in requests)
-    done = subprocess.run([node, "--no-experimental-fetch", pathlib.Path(__file__).with_name("web_module.cjs"), module],
+    done = subprocess.run([node, pathlib.Path(__file__).with_name("web_module.cjs"), module],
                           input=lines, capture_output=True, text=True, check=True)
     return [json.loads(line) for line in done.stdout.splitlines()]
 
