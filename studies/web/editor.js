@@ -51,9 +51,9 @@ const Editor = (() => {
   }
 
   /** Reads a text by the program's reader, in a worker; `name`: what messages call it. */
-  async function check(text, name, worker = 'check') {
-    if (Solver.age(worker) > 2) Solver.stop(worker);
-    const got = await Solver.ask(worker, 'check', {scene: text, file: name, solve: false});
+  async function check(text, name) {
+    if (Solver.age('check') > 2) Solver.stop('check');
+    const got = await Solver.ask('check', 'check', {scene: text, file: name, solve: false});
     return got?.answer ?? null;
   }
 

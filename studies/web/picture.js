@@ -269,8 +269,8 @@ const Picture = (() => {
     });
 
   /**
-     Draws a scene into a place. `whole`: picture of the answer; `step`: which of its frames; `key`: while it stays,
-     the window stays too.
+   * Draws a scene into a place. `whole`: picture of the answer; `step`: which of its frames; `key`: while it stays,
+   * the window stays too.
    */
   function draw(place, scene, whole, step, key, words, on_move) {
     const picture = at_step(whole, step);

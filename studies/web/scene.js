@@ -75,12 +75,12 @@ const Scenes = (() => {
   }
 
   /**
-     A scene that is ready: `source` {path, text, edited}, `lesson`: its entry of lessons.json, `document`: as read,
-      `size`: of it.
+   * A scene that is ready: `source` {path, text, edited}, `lesson`: its entry of lessons.json, `document`: as read, `size`:
+   * of it, but of no lesson.
    */
   function make(source, lesson, document, size) {
     const controls = {};
-    for (const [name, given] of Object.entries(lesson?.controls ?? controls_of(document, size.extent))) {
+    for (const [name, given] of Object.entries(lesson?.controls ?? controls_of(document, size?.extent))) {
       const control = controls[name] = {name, ...given};
       if (control.choices) {
         control.value = control.initial = 0;

@@ -125,7 +125,7 @@ TOO_LARGE = WAIT + """
 """
 CANCEL = WAIT + """
   await until(() => document.querySelector('.column .stop:not([hidden])'));
-  const words = document.querySelector('.column .progress').textContent;
+  const words = all('.column .progress').map((place) => place.textContent).join('');
   let ticks = 0;
   const timer = setInterval(() => ++ticks, 20);
   await pause(1200);
