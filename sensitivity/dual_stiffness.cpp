@@ -1,7 +1,7 @@
 #include "sensitivity/dual_stiffness.hpp"
 
 #include <array>
-#include <cassert>
+#include <stdexcept>
 
 namespace stickslip {
 
@@ -77,8 +77,11 @@ void DualStiffness::add_forces(const Vector<Direction>& u, Vector<Direction>& fo
       case 16:
         add.template operator()<16>(e);
         break;
+      case 24:
+        add.template operator()<24>(e);
+        break;
       default:
-        assert(false);  // no element has so many dofs
+        throw std::logic_error("DualStiffness: an element of a number of dofs that is not known");
     }
 }
 

@@ -45,10 +45,11 @@ const int* branches_of(const WorkPairs& pairs, const BodyMesh& body, int e, Eige
 template <class Shape, Kinematics kinematics, class L>
 void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>& slots, int b, const WorkPairs& pairs,
                          std::vector<double>& by, WorkDerivative& left) {
+  constexpr int D = Shape::dimension;
   const auto& body = model.bodies[b];
   const auto [plain, numbers] = plain_law(law);
   const Reverse& thickness = slots.depths[b].thickness;
-  std::vector<StateOfElement<Shape::nodes>> states(increments_in(pairs));
+  std::vector<StateOfElement<Shape>> states(increments_in(pairs));
   if (!Remembers<L> && pairs.weights.size() == 0) return;
   const auto is_on_tape = [](const Reverse& x) { return x.entry >= 0; };
   const Wanted wanted{is_on_tape(slots.points(0, body.first_node)) || is_on_tape(thickness),
@@ -56,15 +57,15 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
   if (!Remembers<L> && !wanted.geometry && !wanted.law) return;
   for (int e = 0; e < body.mesh.element_count(); ++e) {
     const auto nodes = detail::element_nodes(body, e);
-    Mat<double, 2, Shape::nodes> X;
+    Nodal<double, Shape> X;
     for (int a = 0; a < Shape::nodes; ++a)
-      for (int i = 0; i < 2; ++i) X(i, a) = slots.points(i, nodes[a]).v;
+      for (int i = 0; i < D; ++i) X(i, a) = slots.points(i, nodes[a]).v;
     for (Eigen::Index n = 0; n < increments_in(pairs); ++n) {
-      StateOfElement<Shape::nodes>& state = states[n];
+      StateOfElement<Shape>& state = states[n];
       for (int a = 0; a < Shape::nodes; ++a)
-        for (int i = 0; i < 2; ++i) {
-          state.motion(i, a) = pairs.motions(2 * nodes[a] + i, n);
-          state.weight(i, a) = pairs.weights.size() > 0 ? pairs.weights(2 * nodes[a] + i, n) : 0;
+        for (int i = 0; i < D; ++i) {
+          state.motion(i, a) = pairs.motions(D * nodes[a] + i, n);
+          state.weight(i, a) = pairs.weights.size() > 0 ? pairs.weights(D * nodes[a] + i, n) : 0;
         }
       if constexpr (Remembers<L>) {
         state.last_memory = remembered(pairs.last_memory, body, e, n);
@@ -77,7 +78,7 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
       if (input.entry >= 0) by[input.entry] += derivative;
     };
     for (int a = 0; a < Shape::nodes; ++a)
-      for (int i = 0; i < 2; ++i) add(slots.points(i, nodes[a]), work.coordinates(i, a));
+      for (int i = 0; i < D; ++i) add(slots.points(i, nodes[a]), work.coordinates(i, a));
     add(thickness, work.depth);
     for (std::size_t k = 0; k < numbers.size(); ++k) add(numbers[k], work.law[k]);
     for_each_further_part(law, [&](const L& of_part) {
@@ -88,7 +89,8 @@ void pull_back_continuum(const L& law, const Model& model, const Slots<Reverse>&
     for (std::size_t n = 0; n < work.last_memory.size(); ++n) {
       const auto column = static_cast<Eigen::Index>(n);
       left.last_memory.col(column).segment(body.first_memory + e * body.memory, body.memory) += work.last_memory[n];
-      for (int a = 0; a < Shape::nodes; ++a) left.motion.col(column).segment<2>(2 * nodes[a]) += work.motion[n].col(a);
+      for (int a = 0; a < Shape::nodes; ++a)
+        left.motion.col(column).template segment<D>(D * nodes[a]) += work.motion[n].col(a);
     }
   }
 }

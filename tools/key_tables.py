@@ -41,28 +41,33 @@ class Tables:
         for alternative in node.get("anyOf", []):
             yield from self.children(alternative)
 
-    def rows(self, path, node, prefix=""):
-        """(key, schema, when required) of all below a path."""
+    def rows(self, path, node, prefix="", within=()):
+        """(key, schema, when required) of all below a path. `within`: definitions that hold it; what is one of them
+        again, as the mesh that is drawn out by a mesh, is not entered."""
         for name, inner, required in self.children(node):
             inner, definition = self.resolved(inner)
             for each in [inner] if name in node.get("properties", {}) else [inner, *inner.get("anyOf", [])]:
                 if "description" in each:
                     yield prefix + name, each, required
             below = f"{path}/{name}".lstrip("/")
-            if below not in self.own and definition != LISTS_OF_OPTIONS and f"$defs/{definition}" not in self.own:
-                yield from self.rows(below, inner, f"{prefix}{name}/")
+            own = below in self.own or f"$defs/{definition}" in self.own
+            if not own and definition != LISTS_OF_OPTIONS and (definition is None or definition not in within):
+                yield from self.rows(below, inner, f"{prefix}{name}/", (*within, definition))
 
     def at(self, path):
+        """The node at a path, and the definition that it refers to."""
         if path.startswith("$defs/"):
-            return self.resolved(self.schema["$defs"][path.removeprefix("$defs/")])[0]
-        node = self.schema
+            definition = path.removeprefix("$defs/")
+            return self.resolved(self.schema["$defs"][definition])[0], definition
+        node, definition = self.schema, None
         for part in path.split("/") if path else []:
-            node = self.resolved(next(inner for name, inner, _ in self.children(node) if name == part))[0]
-        return node
+            node, definition = self.resolved(next(inner for name, inner, _ in self.children(node) if name == part))
+        return node, definition
 
     def table(self, path):
         lines = []  # neighbours that differ in their names alone share a line
-        for key, node, required in self.rows(path, self.at(path)):
+        at, definition = self.at(path)
+        for key, node, required in self.rows(path, at, within=(definition,)):
             cells = [kind(node), standard(node, required), node["description"], example(key, node)]
             object_ = key.rpartition("/")[0]
             if lines and lines[-1][1][:3] == cells[:3] and lines[-1][0][0].rpartition("/")[0] == object_:

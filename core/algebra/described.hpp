@@ -31,6 +31,14 @@ struct IfGiven {
 struct Place2D {
   std::array<double, 2> example;
 };
+/// A place in space, for structs that are in space alone.
+struct Place3D {
+  std::array<double, 3> example;
+};
+/// A generated mesh of the plane. `example`: JSON.
+struct MeshInPlane {
+  const char* example;
+};
 /// Four places in the plane.
 struct Corners2D {
   std::array<std::array<double, 2>, 4> example;
@@ -40,6 +48,12 @@ struct Corners2D {
 struct Direction2D {
   const char* what;
   std::array<double, 2> example;
+};
+
+/// A direction in space, for structs that are in space alone.
+struct Direction3D {
+  const char* what;
+  std::array<double, 3> example;
 };
 
 /// The angle in degrees at which a sector ends that starts at another. Where it ends after a full turn is where it
@@ -52,7 +66,7 @@ struct EndOfTurn {
 template <class S>
 EndOfTurn(Number S::*, double) -> EndOfTurn<S>;
 
-/// A number of cells; numbers of cells along two directions.
+/// A number of cells; numbers of cells along two directions (a std::array), or one an axis (a std::vector).
 struct Count {
   int example;
 };

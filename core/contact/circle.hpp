@@ -11,7 +11,7 @@ namespace stickslip {
 
 /// `inside`: the outside of a disk is solid, the free space is inside.
 struct Circle {
-  static constexpr bool is_in_space = false, is_flat = false;
+  static constexpr bool is_in_plane = true, is_in_space = false, is_flat = false;
   static constexpr const char *key = "circle", *about = "a drum, or a cup; not in space";
   std::array<Number, 2> center;
   Number radius;
@@ -24,20 +24,31 @@ struct Circle {
   }
 };
 
-/// Geometry of the place X + w; arguments as of a plane. With D from the centre to X, the distance grows by |D + w| -
+namespace detail {
+
+/// Geometry of the place X + w against a circle or a sphere. With D from the centre to X, the distance grows by |D + w| -
 /// |D| = (2 D + w).w / (|D + w| + |D|), which keeps the digits of w. Singular where X is the centre.
-template <class T, class Start, class Motion, class Read>
-PointGeometry<T> against(const Start& X, const Motion& w, const Circle& circle, const Read& numbers) {
-  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(2), D(2);
+template <class T, class Start, class Motion, class Round, class Read>
+PointGeometry<T> against_round(const Start& X, const Motion& w, const Round& round, const Read& numbers) {
+  const int dimension = static_cast<int>(round.center.size());
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(dimension), D(dimension);
   T twice{};
-  for (int i = 0; i < 2; ++i) {
-    D[i] = X[i] - numbers(circle.center[i]);
+  for (int i = 0; i < dimension; ++i) {
+    D[i] = X[i] - numbers(round.center[i]);
     n[i] = D[i] + w[i];
     twice += (D[i] + n[i]) * w[i];
   }
-  const T first = norm(D), distance = norm(n), sign(circle.inside ? -1.0 : 1.0);
-  for (int i = 0; i < 2; ++i) n[i] *= sign / distance;
-  return detail::rigid<T>(sign * (first - numbers(circle.radius) + twice / (distance + first)), n);
+  const T first = norm(D), distance = norm(n), sign(round.inside ? -1.0 : 1.0);
+  for (int i = 0; i < dimension; ++i) n[i] *= sign / distance;
+  return rigid<T>(sign * (first - numbers(round.radius) + twice / (distance + first)), n);
+}
+
+}  // namespace detail
+
+/// Geometry of the place X + w; arguments as of a plane.
+template <class T, class Start, class Motion, class Read>
+PointGeometry<T> against(const Start& X, const Motion& w, const Circle& circle, const Read& numbers) {
+  return detail::against_round<T>(X, w, circle, numbers);
 }
 
 /// The key of the surface that is wrong where x has no nearest place on it; nullptr where x has one.

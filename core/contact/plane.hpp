@@ -11,7 +11,7 @@ namespace stickslip {
 
 /// Behind a point; the normal points out of it, into the free space (need not be a unit vector).
 struct Plane {
-  static constexpr bool is_in_space = true, is_flat = true;
+  static constexpr bool is_in_plane = true, is_in_space = true, is_flat = true;
   static constexpr const char *key = "plane", *about = "a half space";
   std::vector<Number> point, normal;
 

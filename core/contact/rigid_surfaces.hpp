@@ -1,5 +1,6 @@
 /// The list of rigid surfaces. Each has a file of its own: its description for the scene, which says its keys
-/// (core/algebra/described.hpp), whether it is made for space (is_in_space) and whether it is flat (is_flat), and
+/// (core/algebra/described.hpp), whether it is made for the plane and for space (is_in_plane,
+/// is_in_space), whether it is flat (is_flat), and
 /// against(X, w, surface, numbers), the geometry of the place X + w: its gap is that of X and what the displacement w
 /// adds, so that a small displacement keeps its digits far from the origin. What it lacks does not compile. One with a
 /// place from which no part of it is nearer than another adds ambiguous_at(). A polyline has facets in place of
@@ -10,26 +11,30 @@
 #include <variant>
 
 #include "core/contact/circle.hpp"
+#include "core/contact/cylinder.hpp"
 #include "core/contact/plane.hpp"
+#include "core/contact/sphere.hpp"
 
 namespace stickslip {
 
 /// Rigid curve from point to point, the solid on its right. `closed`: the last point is the first again.
 struct Polyline {
-  static constexpr bool is_in_space = false, is_flat = false;
+  static constexpr bool is_in_plane = true, is_in_space = false, is_flat = false;
   std::vector<std::array<Number, 2>> points;  ///< without the repeated one
   bool closed = false;
 };
 
-using RigidSurface = std::variant<Plane, Circle, Polyline>;
+using RigidSurface = std::variant<Plane, Circle, Sphere, Cylinder, Polyline>;
 
 template <class S>
 concept WholeSurface = requires(const S& surface, const Vec<double, 2>& x, const Numbers<double>& numbers) {
+  { S::is_in_plane } -> std::convertible_to<bool>;
   { S::is_in_space } -> std::convertible_to<bool>;
   { S::is_flat } -> std::convertible_to<bool>;
   { against<double>(x, x, surface, numbers) } -> std::same_as<PointGeometry<double>>;
 };
-static_assert(WholeSurface<Plane> && WholeSurface<Circle> && !WholeSurface<Polyline>);
+static_assert(WholeSurface<Plane> && WholeSurface<Circle> && WholeSurface<Sphere> && WholeSurface<Cylinder> &&
+              !WholeSurface<Polyline>);
 
 inline bool is_in_space(const RigidSurface& surface) {
   return std::visit([](const auto& shape) { return shape.is_in_space; }, surface);

@@ -166,7 +166,8 @@ std::vector<T> FullBodies<T>::tangent_of(const BodyMatrix<T>& matrix, BodyKind k
   if (model_.followers.empty()) return values;
   for_each_follower_tangent(model_, slots_, at, [&](const std::vector<int>& nodes, const Matrix<T>& K) {
     const Matrix<T> framed = into_frames(model_, slots_.frames, nodes, K);
-    const auto row_of = [&](Eigen::Index k) { return matrix.row_of_dof[nodes[k / 2] * 2 + k % 2]; };
+    const int D = model_.dimension;
+    const auto row_of = [&](Eigen::Index k) { return matrix.row_of_dof[nodes[k / D] * D + k % D]; };
     for (Eigen::Index r = 0; r < K.rows(); ++r)
       for (Eigen::Index c = 0; c < K.cols(); ++c)
         if (row_of(r) >= 0 && row_of(c) >= 0) values[locate(*matrix.pattern, row_of(r), row_of(c))] -= framed(r, c);

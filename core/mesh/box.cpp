@@ -3,14 +3,22 @@
 namespace stickslip {
 
 std::string fault(const BoxMesh& box, const std::string& element, int dimension) {
-  if (dimension != 2) return "a box of two corners with 2 coordinates each needs a plane space";
-  if (const auto message = element_fault("a box", element); !message.empty()) return message;
-  if (box.cells[0] < 1 || box.cells[1] < 1) return "cells of a box must be at least 1";
-  for (int axis = 0; axis < 2; ++axis)
+  const auto axes = static_cast<std::size_t>(dimension);
+  if (box.min.size() != axes || box.max.size() != axes || box.cells.size() != axes)
+    return "min, max and cells of a box have one number an axis, " + std::to_string(dimension) + " in this space";
+  if (const auto message = element_fault("a box", element, dimension); !message.empty()) return message;
+  std::vector<std::string> sides;
+  for (int axis = 0; axis < dimension; ++axis) {
+    if (box.cells[axis] < 1) return "cells of a box must be at least 1";
     if (!(box.max[axis].value > box.min[axis].value)) return "max of a box must be greater than min";
-  return grade_fault(box.grade_towards, box.grade.value, {"left", "right", "bottom", "top"});
+    for (const char* side : box_sides(axis, dimension)) sides.emplace_back(side);
+  }
+  return grade_fault(box.grade_towards, box.grade.value, sides);
 }
 
-Mesh topology(const BoxMesh& box, const std::string& element, int) { return grid(box.cells, element); }
+Mesh topology(const BoxMesh& box, const std::string& element, int dimension) {
+  if (dimension == 3) return grid(std::array{box.cells[0], box.cells[1], box.cells[2]}, element);
+  return grid(std::array{box.cells[0], box.cells[1]}, element);
+}
 
 }  // namespace stickslip

@@ -1,4 +1,4 @@
-/// Axis-parallel block of cells[0] x cells[1] cells, numbered as a grid (core/mesh/grid.hpp).
+/// Block along the axes, in the plane or in space, numbered as a grid (core/mesh/grid.hpp).
 #pragma once
 
 #include <array>
@@ -10,24 +10,28 @@
 
 namespace stickslip {
 
-/// Sides left right bottom top. `grade` > 1 makes cells grow away from the side named in `grade_towards` by that total
-/// ratio (largest cell / smallest cell).
+/// Sides left right bottom top; in space left right along x, front back along y, bottom top along z. `grade` > 1 makes
+/// cells grow away from the side named in `grade_towards` by that total ratio (largest cell / smallest cell).
 struct BoxMesh {
-  static constexpr const char *key = "box", *about = "a rectangle; sides left, right, bottom, top";
+  static constexpr const char *key = "box", *about =
+                                                "a rectangle; sides left, right, bottom, top; in space a block, with "
+                                                "front and back too";
   static constexpr Filling filling = Filling::continuum;
-  std::array<Number, 2> min, max;
-  std::array<int, 2> cells{1, 1};
-  std::string grade_towards;  ///< empty: uniform
+  static constexpr bool fills_space = true;
+  static constexpr std::array sides{"left", "right", "bottom", "top", "front", "back"};
+  std::vector<Number> min = std::vector<Number>(2), max = min;  ///< as many coordinates as axes
+  std::vector<int> cells{1, 1};                                 ///< likewise
+  std::string grade_towards;                                    ///< empty: uniform
   Number grade = 1.0;
 
   double cell_count() const { return product(cells); }
   static constexpr auto keys() {
-    return std::tuple{Key{&BoxMesh::min, "min", "lower left corner (length)", Place2D{{0, 0}}},
-                      Key{&BoxMesh::max, "max", "upper right corner (length)", Place2D{{4, 2}}},
-                      Key{&BoxMesh::cells, "cells", "along x, along y", Counts{{16, 8}}},
+    return std::tuple{Key{&BoxMesh::min, "min", "lower left (front) corner (length)", Place2D{{0, 0}}},
+                      Key{&BoxMesh::max, "max", "upper right (back) corner (length)", Place2D{{4, 2}}},
+                      Key{&BoxMesh::cells, "cells", "along x, along y, in space along z", Counts{{16, 8}}},
                       Key{&BoxMesh::grade, "grade",
                           "largest cell over smallest, smallest at the side that is named (left out: all alike)",
-                          Grade{&BoxMesh::grade_towards, grid_sides, 8}}};
+                          Grade{&BoxMesh::grade_towards, sides, 8}}};
   }
 };
 
@@ -35,23 +39,37 @@ struct BoxMesh {
 std::string fault(const BoxMesh&, const std::string& element, int dimension);
 Mesh topology(const BoxMesh&, const std::string& element, int dimension);
 
-/// Coordinates, 2 x nodes.
+/// Names of the sides at the low and at the high end of an axis.
+inline std::array<const char*, 2> box_sides(int axis, int dimension) {
+  if (axis == 0) return {"left", "right"};
+  if (axis == dimension - 1) return {"bottom", "top"};
+  return {"front", "back"};
+}
+
+/// Coordinates, dimension x nodes.
 template <class T>
-Points<T> coordinates(const BoxMesh& box, const Numbers<T>& numbers, int) {
+Points<T> coordinates(const BoxMesh& box, const Numbers<T>& numbers, int dimension) {
   const T ratio = numbers(box.grade);
-  const auto fx = grid_fractions(box.cells[0], box.grade_towards, ratio, "left", "right"),
-             fy = grid_fractions(box.cells[1], box.grade_towards, ratio, "bottom", "top");
+  std::vector<std::vector<T>> fractions;
+  Eigen::Index count = 1;
+  for (int axis = 0; axis < dimension; ++axis) {
+    const auto [low, high] = box_sides(axis, dimension);
+    fractions.push_back(grid_fractions(box.cells[axis], box.grade_towards, ratio, low, high));
+    count *= static_cast<Eigen::Index>(fractions.back().size());
+  }
   // both ends weighted, so that each is met exactly
   auto between = [&](int axis, const T& f) {
     return (T(1.0) - f) * numbers(box.min[axis]) + f * numbers(box.max[axis]);
   };
-  Points<T> points(2, fx.size() * fy.size());
-  int node = 0;
-  for (const T& y : fy)
-    for (const T& x : fx) {
-      points(0, node) = between(0, x);
-      points(1, node++) = between(1, y);
+  Points<T> points(dimension, count);
+  for (Eigen::Index node = 0; node < count; ++node) {
+    Eigen::Index rest = node;
+    for (int axis = 0; axis < dimension; ++axis) {
+      const auto along = static_cast<Eigen::Index>(fractions[axis].size());
+      points(axis, node) = between(axis, fractions[axis][rest % along]);
+      rest /= along;
     }
+  }
   return points;
 }
 

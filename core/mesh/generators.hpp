@@ -1,6 +1,6 @@
 /// From the description of a mesh to its topology (numbers play no part) and its coordinates (in any scalar, so that
 /// the derivative with respect to every dimension is exact). One file per family: box, quad, ring, disk, half_disk,
-/// chain. It holds the description for the scene, as the user wrote it, which says its keys
+/// extruded, chain. It holds the description for the scene, as the user wrote it, which says its keys
 /// (core/algebra/described.hpp), `filling` and cell_count(), the number of its quadrilaterals or bars; fault, topology
 /// and coordinates; and `bend` if it has curved sides: what moves the middles of quadratic elements onto them. What a
 /// description lacks does not compile.
@@ -12,6 +12,7 @@
 #include "core/mesh/box.hpp"
 #include "core/mesh/chain.hpp"
 #include "core/mesh/disk.hpp"
+#include "core/mesh/extruded.hpp"
 #include "core/mesh/half_disk.hpp"
 #include "core/mesh/imported.hpp"
 #include "core/mesh/mesh.hpp"
@@ -22,14 +23,15 @@
 namespace stickslip {
 
 /// In the order in which messages and the schema name them.
-using MeshDescription =
-    std::variant<BoxMesh, QuadMesh, RingMesh, DiskMesh, HalfDiskMesh, PointMesh, LineMesh, ArcMesh, ImportedMesh>;
+using MeshDescription = std::variant<BoxMesh, QuadMesh, RingMesh, DiskMesh, HalfDiskMesh, ExtrudedMesh, PointMesh,
+                                     LineMesh, ArcMesh, ImportedMesh>;
 
 /// What the mesh is made of.
 Filling filling_of(const MeshDescription&);
 
 /// What is wrong with a description, this element and this dimension of the space, as a sentence without a full stop;
-/// "" if nothing. `element`: "Q4", "Q4_mean_dilatation", "Q8", "T3" or "T6" (plane meshes), "bar" (chains), "point", or
+/// "" if nothing. `element`: "Q4", "Q4_mean_dilatation", "Q8", "T3" or "T6" (plane meshes), "H8",
+/// "H8_mean_dilatation" or "T4" (meshes of space), "bar" (chains), "point", or
 /// "" for the default.
 std::string mesh_fault(const MeshDescription&, const std::string& element, int dimension);
 

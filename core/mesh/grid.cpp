@@ -2,7 +2,72 @@
 
 #include <algorithm>
 
+#include "core/mesh/sides.hpp"
+
 namespace stickslip {
+namespace {
+
+/// A cell of space, as one hexahedron, or as six tetrahedra around its diagonal from corner 0 to corner 6. `mirrored`:
+/// along which directions the cell is turned over before, so that the diagonals of cells that share a face agree, and no
+/// direction is preferred.
+void append_block(Mesh& mesh, const std::array<int, 8>& n, const std::array<bool, 3>& mirrored) {
+  if (mesh.shape == ElementShape::hex8) {
+    mesh.connectivity.insert(mesh.connectivity.end(), n.begin(), n.end());
+    return;
+  }
+  // corner by its place along the three directions: bit 0, 1, 2
+  static constexpr std::array<int, 8> corner{0, 1, 3, 2, 4, 5, 7, 6};
+  int flip = 0;
+  for (int axis = 0; axis < 3; ++axis) flip |= mirrored[axis] ? 1 << axis : 0;
+  const bool odd = (mirrored[0] + mirrored[1] + mirrored[2]) % 2 == 1;
+  static constexpr std::array<std::array<int, 3>, 6> orders{
+      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+  for (std::size_t o = 0; o < orders.size(); ++o) {
+    int at = 0;
+    std::array<int, 4> tet{n[corner[flip]]};
+    for (int step = 0; step < 3; ++step) {
+      at |= 1 << orders[o][step];
+      tet[step + 1] = n[corner[at ^ flip]];
+    }
+    if ((o >= 3) != odd) std::swap(tet[1], tet[2]);
+    mesh.connectivity.insert(mesh.connectivity.end(), tet.begin(), tet.end());
+  }
+}
+
+}  // namespace
+
+Mesh grid(const std::array<int, 3>& cells, const std::string& element) {
+  const auto [nx, ny, nz] = cells;
+  const auto node = [&, nx = nx, ny = ny](int i, int j, int k) { return (k * (ny + 1) + j) * (nx + 1) + i; };
+  Mesh mesh;
+  mesh.dimension = 3;
+  mesh.shape = structured_shape(element, 3);
+  mesh.node_count = (nx + 1) * (ny + 1) * (nz + 1);
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        append_block(mesh,
+                     {node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k), node(i, j, k + 1),
+                      node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)},
+                     {i % 2 == 1, j % 2 == 1, k % 2 == 1});
+  const Side all = boundary_of(mesh);
+  const auto side = [&](auto&& holds) {
+    Side of;
+    for (const int n : all.nodes)
+      if (holds(n)) of.nodes.push_back(n);
+    for (const auto& facet : all.facets)
+      if (std::all_of(facet.begin(), facet.end(), holds)) of.facets.push_back(facet);
+    return of;
+  };
+  const int row = nx + 1, layer = row * (ny + 1);
+  mesh.sides = {{"left", side([&](int n) { return n % row == 0; })},
+                {"right", side([&, nx = nx](int n) { return n % row == nx; })},
+                {"front", side([&](int n) { return n % layer / row == 0; })},
+                {"back", side([&, ny = ny](int n) { return n % layer / row == ny; })},
+                {"bottom", side([&](int n) { return n / layer == 0; })},
+                {"top", side([&, nz = nz](int n) { return n / layer == nz; })}};
+  return mesh;
+}
 
 Mesh grid(const std::array<int, 2>& cells, const std::string& element) {
   const int nx = cells[0], ny = cells[1];

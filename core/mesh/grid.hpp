@@ -1,4 +1,4 @@
-/// What the meshes of a rectangle of cells share (box, quad, ring): topology and grading.
+/// What the meshes of a rectangle of cells share (box, quad, ring), and those of a block: topology and grading.
 ///
 /// cells[0] x cells[1] cells, node (i, j) has number j (cells[0] + 1) + i; sides `bottom right top left`, each from its
 /// start to its end counter-clockwise.
@@ -15,6 +15,10 @@ namespace stickslip {
 inline constexpr std::array grid_sides{"left", "right", "bottom", "top"};
 
 Mesh grid(const std::array<int, 2>& cells, const std::string& element);
+
+/// A block of cells in space. Node (i, j, k) has number (k (cells[1] + 1) + j) (cells[0] + 1) + i; sides left right along
+/// the first direction, front back along the second, bottom top along the third.
+Mesh grid(const std::array<int, 3>& cells, const std::string& element);
 
 /// Fractions along one axis; cells grow away from the side `low` or `high` if that is the one they are graded towards.
 template <class T>

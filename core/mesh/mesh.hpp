@@ -11,23 +11,29 @@
 
 namespace stickslip {
 
-enum class ElementShape { point, bar2, tri3, quad4, tri6, quad8 };
+enum class ElementShape { point, bar2, tri3, quad4, tri6, quad8, tet4, hex8 };
 
 /// What a mesh is made of.
 enum class Filling { point, bars, continuum };
 
 /// Nodes of one element of the shape: corners first, then the middles of the sides in turn.
 int nodes_of(ElementShape);
-/// Corners of a plane element; nodes of the others.
+/// Corners of an element of a continuum; nodes of the others.
 int corners_of(ElementShape);
 /// Whether elements of the shape fill a region (springs and bars do not).
 bool is_continuum(ElementShape);
 /// Whether its sides have nodes in the middle.
 bool is_quadratic(ElementShape);
+/// Whether elements of the shape fill a region of space.
+bool is_solid(ElementShape);
+/// The sides of an element of a continuum: of each its nodes, counted within the element. In the plane its edges, start
+/// and end (and middle), the element on their left; in space its faces, counter-clockwise seen from outside.
+const std::vector<std::vector<int>>& sides_of(ElementShape);
 
-/// Named part of the boundary: nodes in order along the side where it is a curve, and its facets (2D: node pairs)
-/// directed so that the solid lies on the LEFT of a -> b (counter-clockwise boundary); facets may be empty
-/// (a corner, a point). Sides of quadratic elements are two facets each, and are listed whole in `quadratic`.
+/// Named part of the boundary: its nodes, in order along the side where it is a curve, and its facets. In the plane a
+/// facet is a pair of nodes, directed so that the solid lies on the LEFT of a -> b (counter-clockwise boundary); in space
+/// it is a face of three or four nodes, counter-clockwise seen from outside. Facets may be empty (a corner, a point).
+/// Sides of quadratic elements are two facets each, and are listed whole in `quadratic`.
 struct Side {
   std::vector<int> nodes;
   std::vector<std::vector<int>> facets;
@@ -40,7 +46,8 @@ struct Mesh {
   int dimension = 2;  ///< of the space the nodes live in
   int node_count = 0;
   ElementShape shape = ElementShape::quad4;
-  std::vector<int> connectivity;  ///< nodes_of(shape) per element; counter-clockwise in 2D
+  /// nodes_of(shape) per element; counter-clockwise in the plane; in space as in core/solids/shapes.hpp
+  std::vector<int> connectivity;
   std::map<std::string, Side> sides;
   /// Of a generated quadratic mesh: the two ends of the edge that each node after the corners halves.
   std::vector<std::array<int, 2>> middles;

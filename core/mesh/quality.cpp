@@ -1,15 +1,59 @@
 #include "core/mesh/quality.hpp"
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace stickslip {
 namespace {
 
+/// The three neighbours of each corner of a solid element, right-handed.
+std::vector<std::array<int, 3>> corners_in_space(ElementShape shape) {
+  if (shape == ElementShape::tet4) return {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};
+  return {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
+}
+
+/// The three edges of a solid element that leave each of its corners: f(place of the corner, edges in columns).
+template <class F>
+void for_each_corner_in_space(const int* nodes, ElementShape shape, const Points<double>& points, F&& f) {
+  const auto neighbours = corners_in_space(shape);
+  for (std::size_t corner = 0; corner < neighbours.size(); ++corner) {
+    const Vec<double, 3> here = points.col(nodes[corner]);
+    Mat<double, 3> edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = points.col(nodes[neighbours[corner][k]]) - here;
+    f(here, edges);
+  }
+}
+
+/// Whether the volume at each corner of a solid element is positive.
+bool is_convex_in_space(const int* nodes, ElementShape shape, const Points<double>& points) {
+  bool convex = true;
+  for_each_corner_in_space(nodes, shape, points, [&](const Vec<double, 3>& here, const Mat<double, 3>& edges) {
+    const double size = edges.colwise().norm().maxCoeff();
+    const double rounding = std::numeric_limits<double>::epsilon() * (here.norm() + size);
+    convex &= edges.determinant() > 3 * rounding * size * size;
+  });
+  return convex;
+}
+
+/// Least height of a corner of a solid element over a face of its neighbours.
+double thickness_in_space(const int* nodes, ElementShape shape, const Points<double>& points) {
+  double least = std::numeric_limits<double>::infinity();
+  for_each_corner_in_space(nodes, shape, points, [&](const Vec<double, 3>&, const Mat<double, 3>& edges) {
+    double largest = 0;
+    for (int k = 0; k < 3; ++k) largest = std::max(largest, edges.col(k).cross(edges.col((k + 1) % 3)).norm());
+    least = std::min(least, std::abs(edges.determinant()) / largest);
+  });
+  return least;
+}
+
 /// Whether all corners turn left. The sides of a quadratic element leave a corner along 4 (middle - corner) - (next
 /// corner - corner).
 bool is_convex(const int* nodes, ElementShape shape, const Points<double>& points) {
+  if (is_solid(shape)) return is_convex_in_space(nodes, shape, points);
   const int count = corners_of(shape);
   auto at = [&](int k) -> Vec<double, 2> { return points.col(nodes[k]).head<2>(); };
   for (int corner = 0; corner < count; ++corner) {
@@ -29,6 +73,7 @@ bool is_convex(const int* nodes, ElementShape shape, const Points<double>& point
 
 /// Least distance of a corner of an element from a side at its neighbour: that of a bar is its length.
 double thickness(const int* nodes, ElementShape shape, const Points<double>& points) {
+  if (is_solid(shape)) return thickness_in_space(nodes, shape, points);
   const auto at = [&](int k) -> Vec<double, 2> { return points.col(nodes[k]).head<2>(); };
   const int count = corners_of(shape);
   double least = std::numeric_limits<double>::infinity();

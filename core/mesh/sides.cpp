@@ -45,40 +45,6 @@ bool has_side(const Mesh& mesh, const std::string& name) {
   return mesh.sides.count(name) > 0 || (name == whole_boundary && is_continuum(mesh.shape));
 }
 
-/// All sides of elements that only one element has, the solid on their left.
-Side boundary_of(const Mesh& mesh) {
-  const int nodes = nodes_of(mesh.shape), corners = corners_of(mesh.shape);
-  std::map<std::pair<int, int>, std::vector<int>> edges;  // start and end -> start, end (, middle)
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int* at = mesh.connectivity.data() + static_cast<std::ptrdiff_t>(e) * nodes;
-    for (int c = 0; c < corners; ++c) {
-      std::vector<int> edge{at[c], at[(c + 1) % corners]};
-      if (is_quadratic(mesh.shape)) edge.push_back(at[corners + c]);
-      if (edges.erase({edge[1], edge[0]}) == 0) edges.emplace(std::pair{edge[0], edge[1]}, edge);
-    }
-  }
-  Side side;
-  std::map<int, std::vector<int>> by_start;
-  for (const auto& [ends, edge] : edges) by_start.emplace(ends.first, edge);
-  while (!by_start.empty()) {  // one loop after another
-    for (auto next = by_start.begin(); next != by_start.end();) {
-      const std::vector<int> edge = next->second;
-      by_start.erase(next);
-      side.nodes.push_back(edge[0]);
-      if (edge.size() == 3) {
-        side.nodes.push_back(edge[2]);
-        side.facets.push_back({edge[0], edge[2]});
-        side.facets.push_back({edge[2], edge[1]});
-        side.quadratic.push_back(edge);
-      } else {
-        side.facets.push_back(edge);
-      }
-      next = by_start.find(edge[1]);
-    }
-  }
-  return side;
-}
-
 Side side_named(const Mesh& mesh, const std::string& name) {
   const auto found = mesh.sides.find(name);
   return found == mesh.sides.end() ? boundary_of(mesh) : found->second;
@@ -133,6 +99,63 @@ Side apply(const Mesh& mesh, const SideExpression& expression) {
 }
 
 }  // namespace
+
+Side boundary_of(const Mesh& mesh) {
+  const int nodes = nodes_of(mesh.shape);
+  const auto facet_of = [&](int e, const std::vector<int>& side) {
+    std::vector<int> facet;
+    for (const int a : side) facet.push_back(mesh.connectivity[static_cast<std::size_t>(e) * nodes + a]);
+    return facet;
+  };
+  if (is_solid(mesh.shape)) {
+    std::map<std::vector<int>, int> elements_at;  // by the nodes of a face, ascending
+    const auto for_each_face = [&](auto&& f) {
+      for (int e = 0; e < mesh.element_count(); ++e)
+        for (const auto& face : sides_of(mesh.shape)) {
+          const auto facet = facet_of(e, face);
+          auto key = facet;
+          std::sort(key.begin(), key.end());
+          f(facet, key);
+        }
+    };
+    for_each_face([&](const auto&, const auto& key) { ++elements_at[key]; });
+    Side side;
+    std::set<int> ascending;
+    for_each_face([&](const auto& facet, const auto& key) {
+      if (elements_at.at(key) > 1) return;
+      side.facets.push_back(facet);
+      ascending.insert(facet.begin(), facet.end());
+    });
+    side.nodes.assign(ascending.begin(), ascending.end());
+    return side;
+  }
+  std::map<std::pair<int, int>, std::vector<int>> edges;  // start and end -> start, end (, middle)
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (const auto& local : sides_of(mesh.shape)) {
+      const auto edge = facet_of(e, local);
+      if (edges.erase({edge[1], edge[0]}) == 0) edges.emplace(std::pair{edge[0], edge[1]}, edge);
+    }
+  Side side;
+  std::map<int, std::vector<int>> by_start;
+  for (const auto& [ends, edge] : edges) by_start.emplace(ends.first, edge);
+  while (!by_start.empty()) {  // one loop after another
+    for (auto next = by_start.begin(); next != by_start.end();) {
+      const std::vector<int> edge = next->second;
+      by_start.erase(next);
+      side.nodes.push_back(edge[0]);
+      if (edge.size() == 3) {
+        side.nodes.push_back(edge[2]);
+        side.facets.push_back({edge[0], edge[2]});
+        side.facets.push_back({edge[2], edge[1]});
+        side.quadratic.push_back(edge);
+      } else {
+        side.facets.push_back(edge);
+      }
+      next = by_start.find(edge[1]);
+    }
+  }
+  return side;
+}
 
 SideExpression parse_side_expression(const std::string& text) {
   SideExpression expression;

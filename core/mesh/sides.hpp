@@ -39,6 +39,10 @@ Side evaluate_side(const Mesh&, const SideExpression&);
 /// The same of a text; in it a side may also stand without a body's name: "left".
 Side evaluate_side(const Mesh&, const std::string& expression);
 
+/// All sides of elements of a continuum that only one element has. In the plane one loop after another, the solid on
+/// their left; in space in the order of the elements, nodes ascending.
+Side boundary_of(const Mesh&);
+
 /// The candidate with the least edit distance to the name (the first of equals); "" if there is none.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates);
 

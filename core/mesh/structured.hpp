@@ -30,12 +30,19 @@ std::vector<T> graded_fractions(const T& ratio, int cells) {
   return fractions;
 }
 
-/// Number of cells of a rectangle of them. (A double: an int may not hold what a file asks for.)
-inline double product(const std::array<int, 2>& cells) { return static_cast<double>(cells[0]) * cells[1]; }
+/// Number of cells along two or three directions. (A double: an int may not hold what a file asks for.)
+template <class Cells>
+double product(const Cells& cells) {
+  double all = 1;
+  for (const int along : cells) all *= along;
+  return all;
+}
 
-/// Shape of the corners of an element in a generated plane mesh: a triangle for "T3" and "T6", else a quadrilateral;
-/// "" means "Q4". Middles of T6 and Q8 come later (core/mesh/middles.hpp).
-inline ElementShape structured_shape(const std::string& element) {
+/// Shape of the corners of an element in a generated mesh. In the plane: a triangle for "T3" and "T6", else a
+/// quadrilateral; "" means "Q4". Middles of T6 and Q8 come later (core/mesh/middles.hpp). In space: a tetrahedron for
+/// "T4", else a hexahedron; "" means "H8".
+inline ElementShape structured_shape(const std::string& element, int dimension = 2) {
+  if (dimension == 3) return element == "T4" ? ElementShape::tet4 : ElementShape::hex8;
   return element == "T3" || element == "T6" ? ElementShape::tri3 : ElementShape::quad4;
 }
 
@@ -43,10 +50,17 @@ inline ElementShape structured_shape(const std::string& element) {
 inline bool is_quadratic(const std::string& element) { return element == "T6" || element == "Q8"; }
 
 /// Whether the element's dilatation is its mean.
-inline bool has_mean_dilatation(const std::string& element) { return element == "Q4_mean_dilatation"; }
+inline bool has_mean_dilatation(const std::string& element) {
+  return element == "Q4_mean_dilatation" || element == "H8_mean_dilatation";
+}
 
-/// What is wrong with an element of a generated plane mesh, or "". `what`: "a box".
-inline std::string element_fault(const std::string& what, const std::string& element) {
+/// What is wrong with an element of a generated mesh, or "". `what`: "a box".
+inline std::string element_fault(const std::string& what, const std::string& element, int dimension = 2) {
+  if (dimension == 3) {
+    for (const char* name : {"", "H8", "H8_mean_dilatation", "T4"})
+      if (element == name) return "";
+    return what + " in space has elements H8, H8_mean_dilatation or T4, not " + element;
+  }
   for (const char* name : {"", "Q4", "Q4_mean_dilatation", "Q8", "T3", "T6"})
     if (element == name) return "";
   return what + " has elements Q4, Q4_mean_dilatation, Q8, T3 or T6, not " + element;

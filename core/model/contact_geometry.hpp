@@ -40,7 +40,7 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   if (point.area_edges.empty()) return T(1);
   T area{};
   for (const auto& edge : point.area_edges) {
-    const auto shares = edge_shares(slots.points, edge, slots.depths[point.slave_body]);
+    const auto shares = side_shares(slots.points, edge, slots.depths[point.slave_body]);
     for (std::size_t a = 0; a < edge.size(); ++a)
       if (edge[a] == point.nodes[0]) area += shares[a];
   }

@@ -16,7 +16,7 @@ Eigen::SparseMatrix<double> laplacian(const Mesh& mesh, const Points<double>& po
   with_shape(mesh.shape, [&]<class Shape>(Shape) {
     for (int e = 0; e < mesh.element_count(); ++e) {
       const int* nodes = mesh.connectivity.data() + static_cast<std::ptrdiff_t>(e) * Shape::nodes;
-      Mat<double, 2, Shape::nodes> X;
+      Nodal<double, Shape> X;
       for (int a = 0; a < Shape::nodes; ++a) X.col(a) = points.col(nodes[a]);
       for (const auto& point : Shape::quadrature()) {
         const Gradient<double, Shape> gradient(point, X);

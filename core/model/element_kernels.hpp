@@ -69,6 +69,8 @@ const ElementKernels<T>& kernels_of(const Model& model, int b) {
   STICKSLIP_ELEMENTS_OF(T, Tri3);        \
   STICKSLIP_ELEMENTS_OF(T, Quad4);       \
   STICKSLIP_ELEMENTS_OF(T, Tri6);        \
-  STICKSLIP_ELEMENTS_OF(T, Quad8)
+  STICKSLIP_ELEMENTS_OF(T, Quad8);       \
+  STICKSLIP_ELEMENTS_OF(T, Tet4);        \
+  STICKSLIP_ELEMENTS_OF(T, Hex8)
 
 }  // namespace stickslip

@@ -69,18 +69,17 @@ bool is_constant(const A& entries) {
 /// Forces of one element of a continuum. Derivatives are computed only of what depends on parameters: most parameters
 /// touch few elements, and those of a material touch no gradient.
 template <class T, class Shape, Kinematics kinematics, class L>
-Mat<T, 2, Shape::nodes> forces_of_element(const L& law, const Mat<T, 2, Shape::nodes>& coordinates,
-                                          const Mat<T, 2, Shape::nodes>& u, const T& thickness,
-                                          const ElementMemory<T>& memory) {
+Nodal<T, Shape> forces_of_element(const L& law, const Nodal<T, Shape>& coordinates, const Nodal<T, Shape>& u,
+                                  const T& thickness, const ElementMemory<T>& memory) {
   if constexpr (tells_constants<T> && !Remembers<L>) {
     if (stickslip::is_constant(thickness) && is_constant(coordinates)) {
-      const Mat<double, 2, Shape::nodes> fixed = values(coordinates);
+      const Nodal<double, Shape> fixed = values(coordinates);
       const auto numbers = law.numbers();
       if (!is_constant(numbers) || !is_constant(u))
         return element_forces<T, Shape, kinematics, double>(law, fixed, u, value(thickness));
       std::array<double, std::tuple_size_v<std::decay_t<decltype(numbers)>>> plain;
       std::transform(numbers.begin(), numbers.end(), plain.begin(), [](const T& x) { return value(x); });
-      const Mat<double, 2, Shape::nodes> forces =
+      const Nodal<double, Shape> forces =
           element_forces<double, Shape, kinematics>(law.with(plain), fixed, values(u), value(thickness));
       return forces.unaryExpr([](double x) { return T(x); });
     }
@@ -126,7 +125,7 @@ double extent(const Mat<T, D, nodes>& coordinates) {
 template <class T, class Shape>
 struct ContinuumKernels {
   using Elements = BodyElements<T>;
-  using Places = Mat<T, 2, Shape::nodes>;
+  using Places = Nodal<T, Shape>;
 
   /// Calls f.template operator()<kinematics>(law, e, nodes, coordinates) for each element.
   template <class F>
@@ -154,7 +153,7 @@ struct ContinuumKernels {
           law, X, detail::gather_displacements<T, Shape>(u, nodes), thickness(elements),
           detail::memory_of_element<L>(elements.body(), e, memory));
       for (int a = 0; a < Shape::nodes; ++a)
-        for (int i = 0; i < 2; ++i) forces[nodes[a] * 2 + i] += f(i, a);
+        for (int i = 0; i < Shape::dimension; ++i) forces[nodes[a] * Shape::dimension + i] += f(i, a);
     });
   }
 
@@ -191,7 +190,7 @@ struct ContinuumKernels {
       if constexpr (Remembers<L>) {
         auto remembered = detail::memory_of_element<L>(elements.body(), e, memory);
         for_each_gradient<T, Shape, kinematics>(X, thickness(elements), [&](const auto& gradient) {
-          sink(L::template plastic_strain<T>(remembered.template take<L::memory>()), gradient.volume);
+          sink(L::template plastic_strain<T>(remembered.template take<memory_at<L, kinematics>()>()), gradient.volume);
         });
       }
     });
@@ -244,8 +243,10 @@ struct ContinuumKernels {
             law.is_finite, X, T(1), detail::gather_displacements<T, Shape>(at.displacement, nodes),
             [&](const auto& H, const T&) {
               const int branch = before.branch();
-              const auto trial = law.trial(H, before.template take<L::memory>(), branch);
-              sink({elements.b, e, std::exchange(memory, memory + L::memory), trial, law.hardening, detail::extent(X)});
+              constexpr int remembered = memory_at<L, kinematics>();
+              const auto trial = law.trial(H, before.template take<remembered>(), branch);
+              sink(
+                  {elements.b, e, std::exchange(memory, memory + remembered), trial, law.hardening, detail::extent(X)});
             });
       }
     });

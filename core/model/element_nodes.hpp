@@ -6,18 +6,18 @@
 namespace stickslip::detail {
 
 template <class T, class Shape>
-Mat<T, 2, Shape::nodes> gather_coordinates(const Points<T>& points, const int* nodes) {
-  Mat<T, 2, Shape::nodes> X;
+Nodal<T, Shape> gather_coordinates(const Points<T>& points, const int* nodes) {
+  Nodal<T, Shape> X;
   for (int a = 0; a < Shape::nodes; ++a)
-    for (int i = 0; i < 2; ++i) X(i, a) = points(i, nodes[a]);
+    for (int i = 0; i < Shape::dimension; ++i) X(i, a) = points(i, nodes[a]);
   return X;
 }
 
 template <class T, class Shape>
-Mat<T, 2, Shape::nodes> gather_displacements(const Vector<T>& u, const int* nodes) {
-  Mat<T, 2, Shape::nodes> local;
+Nodal<T, Shape> gather_displacements(const Vector<T>& u, const int* nodes) {
+  Nodal<T, Shape> local;
   for (int a = 0; a < Shape::nodes; ++a)
-    for (int i = 0; i < 2; ++i) local(i, a) = u[nodes[a] * 2 + i];
+    for (int i = 0; i < Shape::dimension; ++i) local(i, a) = u[nodes[a] * Shape::dimension + i];
   return local;
 }
 

@@ -12,17 +12,16 @@ inline bool is_of(const SideSet& side, int node) {
   return std::find(side.nodes.begin(), side.nodes.end(), node) != side.nodes.end();
 }
 
-/// Consistent shares of each edge for its nodes, as far as they belong to the side: force per area, or along the inward
-/// normal where it is a pressure (solid on the left of an edge).
+/// Consistent shares of each side of an element for its nodes, as far as they belong to the side: force per area, or
+/// against the outward normal where it is a pressure.
 template <class T>
 void add_surface_load(const Load& load, const SideSet& side, const Slots<T>& slots, int D, Vector<T>& forces) {
   for (const auto& edge : side.edges)
-    for_each_edge_point(slots.points, edge, slots.depths[side.body],
-                        [&](const auto& values, const auto& tau, const T& area) {
+    for_each_side_point(slots.points, edge, slots.depths[side.body],
+                        [&](const auto& values, const auto& outward, const T& area) {
                           Vector<T> force(D);
                           if (load.kind == Load::Kind::pressure) {
-                            force << -tau[1], tau[0];
-                            force *= slots.numbers(load.vector[0]);
+                            for (int i = 0; i < D; ++i) force[i] = -outward[i] * slots.numbers(load.vector[0]);
                           } else {
                             for (int i = 0; i < D; ++i) force[i] = area * slots.numbers(load.vector[i]);
                           }
@@ -38,7 +37,7 @@ void add_total_force(const Load& load, const SideSet& side, const Slots<T>& slot
   std::vector<std::pair<int, T>> share;
   T total{};
   for (const auto& edge : side.edges) {
-    const auto shares = edge_shares(slots.points, edge, slots.depths[side.body]);
+    const auto shares = side_shares(slots.points, edge, slots.depths[side.body]);
     for (std::size_t a = 0; a < edge.size(); ++a)
       if (is_of(side, edge[a])) {
         share.emplace_back(edge[a], shares[a]);
@@ -76,36 +75,32 @@ void add_body_force(const Model& model, const Load& load, int b, const Slots<T>&
           for (int a = 0; a < Shape::nodes; ++a) add(nodes[a], T(point.value[a]) * volume);
         }
       };
-      if (slots.depths[b].of_revolution)
-        add_shares.template operator()<Kinematics::revolution>();
-      else
-        add_shares.template operator()<Kinematics::plane>();
+      if constexpr (Shape::dimension == 2)
+        if (slots.depths[b].of_revolution) return add_shares.template operator()<Kinematics::revolution>();
+      add_shares.template operator()<plain_kinematics<Shape>>();
     });
   }
 }
 
-/// Forces of a pressure on an edge at its nodes' places, 2 x nodes. `loaded`: nodes that it acts on. `pressure_at`: by
-/// point of the edge's quadrature.
+/// Forces of a pressure on a side of an element at its nodes' places, dimension x nodes. `loaded`: nodes that it acts on.
+/// `pressure_at`: by point of the side's quadrature.
 template <class T, class Pressure>
 Points<T> pressure_on(const Points<T>& places, const std::vector<char>& loaded, const Depth<T>& depth,
                       Pressure&& pressure_at) {
   std::vector<int> edge(loaded.size());
   for (std::size_t a = 0; a < edge.size(); ++a) edge[a] = static_cast<int>(a);
-  Points<T> forces = Points<T>::Constant(2, places.cols(), T(0));
+  Points<T> forces = Points<T>::Constant(places.rows(), places.cols(), T(0));
   int point = 0;
-  for_each_edge_point(places, edge, depth, [&](const auto& values, const auto& tau, const T&) {
+  for_each_side_point(places, edge, depth, [&](const auto& values, const auto& outward, const T&) {
     const T pressure = pressure_at(point++);
-    for (std::size_t a = 0; a < edge.size(); ++a) {
-      if (!loaded[a]) continue;
-      forces(0, a) += T(values[a]) * (-tau[1] * pressure);
-      forces(1, a) += T(values[a]) * (tau[0] * pressure);
-    }
+    for (std::size_t a = 0; a < edge.size(); ++a)
+      for (int i = 0; loaded[a] && i < places.rows(); ++i) forces(i, a) += T(values[a]) * (-outward[i] * pressure);
   });
   return forces;
 }
 
-/// An edge that a pressure follows. It acts on the present length times the thickness of the start; in plane stress the
-/// stretch of the thickness multiplies it, point by point.
+/// A side of an element that a pressure follows. It acts on the present area, in the plane the present length times the
+/// thickness of the start; in plane stress the stretch of the thickness multiplies it, point by point.
 template <class T>
 struct FollowedEdge {
   const std::vector<int>& nodes;
@@ -140,12 +135,13 @@ void for_each_followed_edge(const Model& model, const Slots<T>& slots, double t,
 /// first, so that they keep the digits of the displacements; of revolution, radii from the axis.
 template <class U, class T, class Make>
 Points<U> present_places(const Slots<T>& slots, int b, const std::vector<int>& nodes, const Vector<T>& u, Make&& make) {
-  Points<U> places(2, nodes.size());
+  const auto D = static_cast<int>(slots.points.rows());
+  Points<U> places(D, nodes.size());
   for (std::size_t a = 0; a < nodes.size(); ++a)
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < D; ++i) {
       const T& X = slots.points(i, nodes[a]);
       const bool is_radius = i == 0 && slots.depths[b].of_revolution;
-      places(i, a) = make((is_radius ? X : T(X - slots.points(i, nodes[0]))) + u[nodes[a] * 2 + i], 2 * a + i);
+      places(i, a) = make((is_radius ? X : T(X - slots.points(i, nodes[0]))) + u[nodes[a] * D + i], D * a + i);
     }
   return places;
 }
@@ -180,34 +176,42 @@ Vector<T> follower_forces(const Model& model, const Slots<T>& slots, double t, c
     const Points<T> force = detail::pressure_on(places, edge.loaded, slots.depths[edge.body],
                                                 [&](int point) { return edge.pressure_at(point); });
     for (std::size_t a = 0; a < edge.nodes.size(); ++a)
-      for (int i = 0; i < 2; ++i) forces[edge.nodes[a] * 2 + i] += force(i, a);
+      for (int i = 0; i < model.dimension; ++i) forces[edge.nodes[a] * model.dimension + i] += force(i, a);
   });
   return forces;
 }
 
-/// Calls sink(nodes, K) for each edge that a pressure follows: derivatives of its forces by displacements, node-major.
-/// In plane stress it calls again with the part that the stretch of the thickness adds.
-template <class T, class Sink>
-void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, Sink&& sink) {
-  constexpr int most = 6;  // dofs of an edge
-  using Probe = Dual<most, T>;
-  detail::for_each_followed_edge(model, slots, at.time, at.displacement, [&](const detail::FollowedEdge<T>& edge) {
+namespace detail {
+
+template <int D, class T, class Sink>
+void visit_follower_tangents(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, Sink&& sink) {
+  using Probe = Dual<D == 2 ? 6 : 12, T>;  // dofs of a side
+  for_each_followed_edge(model, slots, at.time, at.displacement, [&](const FollowedEdge<T>& edge) {
     const int n = static_cast<int>(edge.nodes.size());
     const auto places =
-        detail::present_places<Probe>(slots, edge.body, edge.nodes, at.displacement,
-                                      [](const T& x, std::size_t k) { return Probe::seed(x, static_cast<int>(k)); });
+        present_places<Probe>(slots, edge.body, edge.nodes, at.displacement,
+                              [](const T& x, std::size_t k) { return Probe::seed(x, static_cast<int>(k)); });
     const auto& depth = slots.depths[edge.body];
-    const auto force = detail::pressure_on<Probe>(places, edge.loaded, {depth.of_revolution, Probe(depth.thickness)},
-                                                  [&](int point) { return Probe(edge.pressure_at(point)); });
-    Matrix<T> K(2 * n, 2 * n);
-    for (int r = 0; r < 2 * n; ++r)
-      for (int c = 0; c < 2 * n; ++c) K(r, c) = force(r % 2, r / 2).d[c];
+    const auto force = pressure_on<Probe>(places, edge.loaded, {depth.of_revolution, Probe(depth.thickness)},
+                                          [&](int point) { return Probe(edge.pressure_at(point)); });
+    Matrix<T> K(D * n, D * n);
+    for (int r = 0; r < D * n; ++r)
+      for (int c = 0; c < D * n; ++c) K(r, c) = force(r % D, r / D).d[c];
     sink(edge.nodes, K);
     if (!edge.stretch.empty()) {
       const Points<T> now = places.unaryExpr([](const Probe& x) { return x.v; });
-      detail::add_thickness_tangent(model, slots, edge, now, sink);
+      add_thickness_tangent(model, slots, edge, now, sink);
     }
   });
+}
+
+}  // namespace detail
+
+/// Calls sink(nodes, K) for each side of an element that a pressure follows: derivatives of its forces by displacements,
+/// node-major. In plane stress it calls again with the part that the stretch of the thickness adds.
+template <class T, class Sink>
+void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, Sink&& sink) {
+  with_dimension(model.dimension, [&]<int D>() { detail::visit_follower_tangents<D>(model, slots, at, sink); });
 }
 
 template <class T>

@@ -46,12 +46,13 @@ Vector<T> less_external_forces(const Model& model, const Slots<T>& slots, double
 template <class T>
 Vector<T> tangent_times(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, const Vector<T>& vector,
                         bool transposed, const ElementLists* only = nullptr) {
+  const int D = model.dimension;
   Vector<T> product = bulk_tangent_times(model, slots, at, vector, only);
   if (!model.followers.empty())
     for_each_follower_tangent(model, slots, at, [&](const std::vector<int>& nodes, const Matrix<T>& K) {
       for (Eigen::Index r = 0; r < K.rows(); ++r)
         for (Eigen::Index c = 0; c < K.cols(); ++c)
-          product[nodes[r / 2] * 2 + r % 2] -= (transposed ? K(c, r) : K(r, c)) * vector[nodes[c / 2] * 2 + c % 2];
+          product[nodes[r / D] * D + r % D] -= (transposed ? K(c, r) : K(r, c)) * vector[nodes[c / D] * D + c % D];
     });
   return product;
 }

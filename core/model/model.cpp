@@ -82,29 +82,36 @@ std::vector<double> step_ends(const Scene& scene) {
   return {ends.begin(), ends.end()};
 }
 
-/// Shape function values at x of a plane element, if it holds x (to rounding).
+/// Shape function values at x of an element of a continuum, if it holds x (to rounding).
 template <class Shape>
 std::optional<std::vector<double>> weights_in(Shape, const Points<double>& points, const std::vector<int>& nodes,
-                                              const Eigen::Vector2d& x) {
+                                              const Eigen::VectorXd& x) {
   constexpr double band = 1e-9;
-  constexpr bool triangle = Shape::corners == 3;
-  Eigen::Vector2d xi = triangle ? Eigen::Vector2d(1.0 / 3, 1.0 / 3) : Eigen::Vector2d(0, 0);
+  constexpr int D = Shape::dimension;
+  const auto shape_at = [](const Vec<double, D>& xi) {
+    if constexpr (D == 3)
+      return Shape::at(xi[0], xi[1], xi[2], 1);
+    else
+      return Shape::at(xi[0], xi[1], 1);
+  };
+  Vec<double, D> xi = Vec<double, D>::Constant(Shape::is_simplex ? 1.0 / (D + 1) : 0);
   for (int iteration = 0; iteration < 20; ++iteration) {  // Newton for the natural coordinates
-    const auto at = Shape::at(xi[0], xi[1], 1);
-    Eigen::Vector2d defect = -x;
-    Eigen::Matrix2d J = Eigen::Matrix2d::Zero();
+    const auto at = shape_at(xi);
+    Vec<double, D> defect = -x;
+    Mat<double, D> J = Mat<double, D>::Zero();
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       defect += at.value[a] * points.col(nodes[a]);
       J += points.col(nodes[a]) * at.gradient.col(a).transpose();
     }
-    const Eigen::Vector2d step = J.partialPivLu().solve(defect);
+    const Vec<double, D> step = J.partialPivLu().solve(defect);
     xi -= step;
     if (!(xi.norm() < 1e3)) return std::nullopt;
     if (step.norm() < 1e-14) break;
   }
-  const bool inside = triangle ? xi.minCoeff() > -band && xi.sum() < 1 + band : xi.cwiseAbs().maxCoeff() < 1 + band;
+  const bool inside =
+      Shape::is_simplex ? xi.minCoeff() > -band && xi.sum() < 1 + band : xi.cwiseAbs().maxCoeff() < 1 + band;
   if (!inside) return std::nullopt;
-  const auto N = Shape::at(xi[0], xi[1], 1).value;
+  const auto N = shape_at(xi).value;
   return std::vector<double>(N.data(), N.data() + N.size());
 }
 
@@ -259,19 +266,22 @@ void place_contact_nodes(Model& model) {
     if (nodes.count(framed.node)) framed.place = model.place_of(framed.node);
 }
 
-/// Whether the elements of a body have a mean dilatation: where that is asked for; and quadrilaterals of four nodes of
-/// a body that flows where nothing is asked for, for they would lock.
+/// Whether the elements of a body have a mean dilatation: where that is asked for; and, where nothing is asked for, those
+/// that would lock: quadrilaterals of four nodes and hexahedra of a body that flows, and hexahedra of one that hardly
+/// changes its volume.
 bool averages(const Scene& scene, const Body& body, ElementShape shape) {
-  const bool may = shape == ElementShape::quad4 && scene.space != Space::plane_stress;
-  return has_mean_dilatation(body.element) || (body.element.empty() && may && flows(body.material));
+  if (has_mean_dilatation(body.element)) return true;
+  if (!body.element.empty()) return false;
+  if (shape == ElementShape::hex8) return flows(body.material) || is_nearly_incompressible(body.material);
+  return shape == ElementShape::quad4 && scene.space != Space::plane_stress && flows(body.material);
 }
 
 /// Gives the elements of a body their places in what bodies remember.
 void place_memory(Model& model, const Material& material, BodyMesh& body) {
-  int points = 1;
-  if (is_continuum(body.mesh.shape))
-    with_shape(body.mesh.shape, [&]<class Shape>(Shape) { points = points_of<Shape>(body.kinematics); });
-  body.memory = points * memory_of(material, !is_continuum(body.mesh.shape));
+  body.memory = is_continuum(body.mesh.shape) ? 0 : memory_of_bar(material);
+  with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
+    body.memory = points_of<Shape>(body.kinematics) * memory_of(material, layout_of(body.kinematics));
+  });
   body.first_memory = model.memory_count;
   model.memory_count += body.memory * body.mesh.element_count();
 }

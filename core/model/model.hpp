@@ -74,17 +74,17 @@ struct ContactPoint {
   /// facet: its two ends; vertex: itself between its neighbours, whose facets share the normal. Vertices of a polyline
   /// count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<int> corners;
-  std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node
+  std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node, in the plane
   std::vector<std::pair<int, int>>
       facet_places;  ///< the same as indices in Model::contact_nodes; for solid bodies along a curve
-  std::vector<std::vector<int>> area_edges;  ///< element edges at the node, a share of which is its tributary area
+  std::vector<std::vector<int>> area_edges;  ///< sides of elements at the node, a share of which is its tributary area
   /// Segment-integrated contact: the segments that the multiplier of nodes[0] acts on. At finite strain: its whole
   /// slave facets, whose present segments are Facing::pieces.
   std::vector<Segment> segments;
   bool area_of_bar = false;    ///< tributary area is the cross-section of the bar; else, without facets, 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
   int slave_body = 0;
-  double mesh_size = 0;   ///< mean length of the slave facets at the node; 0: no facets
+  double mesh_size = 0;   ///< mean length of the slave facets at the node, or of their edges; 0: none
   double tie_length = 0;  ///< length up to which an initial gap may be rounding of the coordinates
   int multiplier = 0;     ///< offset of its components in the multiplier vector
   int tangents = 0;       ///< 0 (frictionless) or D - 1

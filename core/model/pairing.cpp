@@ -86,10 +86,18 @@ bool find_master(const Points<double>& points, const Model& model, const Facets&
   return true;
 }
 
-/// Mean length of the facets at a slave node; 0 without facets.
-double local_size(const Points<double>& points, const std::vector<std::pair<int, int>>& facets) {
+/// Mean length of the facets at a slave node, in space of their edges; 0 without facets.
+double local_size(const Points<double>& points, const ContactPoint& point) {
   double size = 0;
-  for (const auto& [a, b] : facets) size += (points.col(a) - points.col(b)).norm() / facets.size();
+  if (points.rows() == 3) {
+    int edges = 0;
+    for (const auto& face : point.area_edges)
+      for (std::size_t a = 0; a < face.size(); ++a, ++edges)
+        size += (points.col(face[a]) - points.col(face[(a + 1) % face.size()])).norm();
+    return edges > 0 ? size / edges : 0;
+  }
+  for (const auto& [a, b] : point.area_facets)
+    size += (points.col(a) - points.col(b)).norm() / point.area_facets.size();
   return size;
 }
 
@@ -120,11 +128,11 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
   point.nodes = {node};
   point.slave_body = pairing.slave.body;
   for (const auto& facet : pairing.slave.facets)
-    if (facet[0] == node || facet[1] == node) point.area_facets.emplace_back(facet[0], facet[1]);
+    if (facet.size() == 2 && (facet[0] == node || facet[1] == node)) point.area_facets.emplace_back(facet[0], facet[1]);
   for (const auto& edge : pairing.slave.edges)
     if (std::find(edge.begin(), edge.end(), node) != edge.end()) point.area_edges.push_back(edge);
   point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
-  point.mesh_size = local_size(points, point.area_facets);
+  point.mesh_size = local_size(points, point);
   point.tie_length = 8 * unit_roundoff * (point.mesh_size + points.col(node).cwiseAbs().maxCoeff());
   // a node on the axis of revolution cannot slide
   const bool slides = model.scene.contacts[pairing.index].friction && !model.is_on_axis(points, node);

@@ -14,14 +14,11 @@
 
 namespace stickslip {
 
-/// Displacement of the place x when it is rotated by one degree: (pi / 180) axis x (x - center), length.
-template <class T, class Place>
-Vector<T> displacement_per_degree(const Rotation& rotation, const Place& x, const Numbers<T>& numbers) {
-  const T degree(std::acos(-1.0) / 180);
-  const int D = static_cast<int>(x.size());
-  Vector<T> arm(D), u(D);
-  for (int i = 0; i < D; ++i) arm[i] = degree * (x[i] - numbers(rotation.center[i]));
-  if (D == 2) {
+/// A rotation's axis x arm; in the plane the axis is out of it.
+template <class T>
+Vector<T> across_axis(const Rotation& rotation, const Vector<T>& arm, const Numbers<T>& numbers) {
+  Vector<T> u(arm.size());
+  if (arm.size() == 2) {
     u << -arm[1], arm[0];
     return u;
   }
@@ -33,6 +30,15 @@ Vector<T> displacement_per_degree(const Rotation& rotation, const Place& x, cons
     u[i] = (axis[j] * arm[k] - axis[k] * arm[j]) / length;
   }
   return u;
+}
+
+/// Displacement of the place x when it is rotated by one degree: (pi / 180) axis x (x - center), length.
+template <class T, class Place>
+Vector<T> displacement_per_degree(const Rotation& rotation, const Place& x, const Numbers<T>& numbers) {
+  const T degree(std::acos(-1.0) / 180);
+  Vector<T> arm(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) arm[i] = degree * (x[i] - numbers(rotation.center[i]));
+  return across_axis(rotation, arm, numbers);
 }
 
 /// A rotation in the plane by a finite angle.
@@ -55,12 +61,17 @@ struct Turn {
   }
 };
 
-/// Displacement of the place x when it is rotated by an angle in degrees: by a finite one exactly, in the plane.
+/// Displacement of the place x when it is rotated by an angle in degrees: by a finite one exactly. In space, with a the
+/// axis and r the arm, sin angle a x r + (1 - cos angle) a x (a x r).
 template <class T, class Place>
 Vector<T> rotated(const Rotation& rotation, const Place& x, const T& degrees, bool finite, const Numbers<T>& numbers) {
   if (!finite) return degrees * displacement_per_degree<T>(rotation, x, numbers);
-  const Vec<T, 2> arm(x[0] - numbers(rotation.center[0]), x[1] - numbers(rotation.center[1]));
-  return Turn<T>::from_degrees(degrees).change(arm);
+  const auto turn = Turn<T>::from_degrees(degrees);
+  Vector<T> arm(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) arm[i] = x[i] - numbers(rotation.center[i]);
+  if (arm.size() == 2) return turn.change(Vec<T, 2>(arm[0], arm[1]));
+  const Vector<T> once = across_axis(rotation, arm, numbers), twice = across_axis(rotation, once, numbers);
+  return turn.sine * once - turn.cosine_less_one * twice;
 }
 
 /// Unit vector that a constraint prescribes the displacement along. pre: it has a support.

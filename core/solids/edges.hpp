@@ -1,4 +1,5 @@
-/// Integrals along the sides of elements: consistent shares of areas and loads, in any scalar.
+/// Integrals over the sides of elements, edges in the plane and faces in space: consistent shares of areas and loads, in
+/// any scalar.
 #pragma once
 
 #include <array>
@@ -42,16 +43,44 @@ inline const std::vector<EdgePoint>& edge_quadrature(int nodes, bool of_revoluti
 
 }  // namespace detail
 
-/// Calls f(values, tau, area) at each quadrature point of an edge (its two ends, and its middle where it is quadratic):
-/// the values N_a of its shape functions, tau, the vector along the edge whose length is the area of the point, and
-/// that area, whose derivative exists on the axis of revolution too, where it is zero. So N_a area sums up to the
-/// tributary area of node a, and N_a times tau turned right to its share of the vector area (solid on the left of the
-/// edge).
+namespace detail {
+
+/// Shape functions of a face at one point of its quadrature, nodes counter-clockwise, and their derivatives along two
+/// directions.
+struct FacePoint {
+  double weight;
+  std::array<double, 4> value, along, across;
+};
+
+/// As many points as make the shares of a flat parallelogram exact.
+inline const std::vector<FacePoint>& face_quadrature(int nodes) {
+  static const std::vector<FacePoint> triangle{{0.5, {1.0 / 3, 1.0 / 3, 1.0 / 3, 0}, {-1, 1, 0, 0}, {-1, 0, 1, 0}}};
+  static const std::vector<FacePoint> quadrilateral = [] {
+    static constexpr double sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1};
+    std::vector<FacePoint> points;
+    for (int q = 0; q < 4; ++q) {
+      const double x = sx[q] / std::sqrt(3.0), y = sy[q] / std::sqrt(3.0);
+      FacePoint point{1, {}, {}, {}};
+      for (int a = 0; a < 4; ++a) {
+        point.value[a] = 0.25 * (1 + sx[a] * x) * (1 + sy[a] * y);
+        point.along[a] = 0.25 * sx[a] * (1 + sy[a] * y);
+        point.across[a] = 0.25 * sy[a] * (1 + sx[a] * x);
+      }
+      points.push_back(point);
+    }
+    return points;
+  }();
+  return nodes == 3 ? triangle : quadrilateral;
+}
+
+template <class T>
+using AreaVector = Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1>;
+
 template <class T, class F>
 void for_each_edge_point(const Points<T>& points, const std::vector<int>& edge, const Depth<T>& depth, F&& f) {
   const int nodes = static_cast<int>(edge.size());
   for (const auto& point : detail::edge_quadrature(nodes, depth.of_revolution)) {
-    Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> tau(points.rows());
+    AreaVector<T> tau(points.rows());
     for (int i = 0; i < points.rows(); ++i) {
       tau[i] = T(0);
       for (int a = 0; a < nodes; ++a) tau[i] += points(i, edge[a]) * T(point.gradient[a]);
@@ -64,16 +93,56 @@ void for_each_edge_point(const Points<T>& points, const std::vector<int>& edge, 
     }
     const T area = norm(tau) * width;
     for (int i = 0; i < points.rows(); ++i) tau[i] *= width;
-    f(point.value, tau, area);
+    AreaVector<T> outward = tau;  // (of an edge in space, a bar, it has no meaning)
+    if (points.rows() == 2) outward << tau[1], -tau[0];
+    f(point.value, outward, area);
   }
 }
 
-/// Tributary areas of the nodes of an edge.
+template <class T, class F>
+void for_each_face_point(const Points<T>& points, const std::vector<int>& face, F&& f) {
+  const int nodes = static_cast<int>(face.size());
+  for (const auto& point : face_quadrature(nodes)) {
+    Vec<T, 3> along = Vec<T, 3>::Constant(T(0)), across = along;
+    for (int a = 0; a < nodes; ++a)
+      for (int i = 0; i < 3; ++i) {
+        along[i] += points(i, face[a]) * T(point.along[a]);
+        across[i] += points(i, face[a]) * T(point.across[a]);
+      }
+    AreaVector<T> outward(3);
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      outward[i] = (along[j] * across[k] - along[k] * across[j]) * T(point.weight);
+    }
+    const T area = norm(outward);
+    f(point.value, outward, area);
+  }
+}
+
+}  // namespace detail
+
+/// Calls f(values, outward, area) at each quadrature point of a side of an element: in the plane an edge (its two ends,
+/// and its middle where it is quadratic), in space a face (its corners counter-clockwise seen from outside).
+///
+///   values   of the shape functions N_a
+///   outward  the vector area of the point, out of the element
+///   area     its length, whose derivative exists on the axis of revolution too, where it is zero
+///
+/// So N_a area sums up to the tributary area of node a. `depth`: unread of a face.
+template <class T, class F>
+void for_each_side_point(const Points<T>& points, const std::vector<int>& side, const Depth<T>& depth, F&& f) {
+  if (points.rows() == 3 && side.size() > 2)
+    detail::for_each_face_point(points, side, f);
+  else
+    detail::for_each_edge_point(points, side, depth, f);
+}
+
+/// Tributary areas of the nodes of a side of an element.
 template <class T>
-std::array<T, 3> edge_shares(const Points<T>& points, const std::vector<int>& edge, const Depth<T>& depth) {
-  std::array<T, 3> shares{T(0), T(0), T(0)};
-  for_each_edge_point(points, edge, depth, [&](const auto& values, const auto&, const T& area) {
-    for (std::size_t a = 0; a < edge.size(); ++a) shares[a] += T(values[a]) * area;
+std::array<T, 4> side_shares(const Points<T>& points, const std::vector<int>& side, const Depth<T>& depth) {
+  std::array<T, 4> shares{T(0), T(0), T(0), T(0)};
+  for_each_side_point(points, side, depth, [&](const auto& values, const auto&, const T& area) {
+    for (std::size_t a = 0; a < side.size(); ++a) shares[a] += T(values[a]) * area;
   });
   return shares;
 }

@@ -25,10 +25,10 @@
 namespace stickslip {
 
 /// Nodal values of one element at one time.
-template <int nodes>
+template <class Shape>
 struct StateOfElement {
-  Mat<double, 2, nodes> motion;   ///< u
-  Mat<double, 2, nodes> weight;   ///< a
+  Nodal<double, Shape> motion;    ///< u
+  Nodal<double, Shape> weight;    ///< a
   Vector<double> last_memory;     ///< what its points remember of the last increment, one after another
   Vector<double> memory;          ///< b, laid out likewise
   const int* branches = nullptr;  ///< of the flows, likewise (ElementMemory)
@@ -41,12 +41,12 @@ struct Wanted {
 };
 
 /// Derivatives of the work; zero where they are not wanted.
-template <int nodes, std::size_t numbers>
+template <class Shape, std::size_t numbers>
 struct ElementWork {
-  Mat<double, 2, nodes> coordinates = Mat<double, 2, nodes>::Zero();
+  Nodal<double, Shape> coordinates = Nodal<double, Shape>::Zero();
   double depth = 0;
   std::array<double, numbers> law{};
-  std::vector<Mat<double, 2, nodes>> motion = {};  ///< per state; empty of a law that does not remember
+  std::vector<Nodal<double, Shape>> motion = {};  ///< per state; empty of a law that does not remember
   std::vector<Vector<double>> last_memory = {};
 };
 
@@ -92,7 +92,7 @@ template <TensorLayout layout, class Law, std::size_t count, class Memory>
 PointWork<layout> point_work(const Law& law, const Tensor<double, layout>& H, const Tensor<double, layout>& A,
                              double volume, std::array<double, count>& by_law, const Memory& before, int branch,
                              const Memory& b, Memory& by_before) {
-  constexpr int components = Tensor<double, layout>::size, memory = Law::memory;
+  constexpr int components = Tensor<double, layout>::size, memory = Memory::RowsAtCompileTime;
   using Probe = Dual<components + memory + static_cast<int>(count)>;
   const auto probed = law.with(seeded_numbers<Probe>(law, components + memory));
   const auto probe = seeded<Probe>(H);
@@ -112,8 +112,8 @@ PointWork<layout> point_work(const Law& law, const Tensor<double, layout>& H, co
 }
 
 /// Adds the derivatives of one point's work by its gradient, over the volume but that by the volume itself.
-template <int nodes, TensorLayout layout, class By>
-void add_by_gradient(const StateOfElement<nodes>& state, const Tensor<double, layout>& A, const PointWork<layout>& work,
+template <class Shape, TensorLayout layout, class By>
+void add_by_gradient(const StateOfElement<Shape>& state, const Tensor<double, layout>& A, const PointWork<layout>& work,
                      By& by) {
   const auto& [P, Q] = work;
   by.volume += A.full().cwiseProduct(P.full()).sum();
@@ -126,37 +126,34 @@ void add_by_gradient(const StateOfElement<nodes>& state, const Tensor<double, la
 
 /// The derivatives of the work of an element with mean dilatation at finite strain: the Dual of the whole element.
 template <class Shape, Kinematics kinematics, class Law>
-auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinates, double depth,
-                   const std::vector<StateOfElement<Shape::nodes>>& states) {
-  constexpr int n = Shape::nodes, count = static_cast<int>(std::tuple_size_v<decltype(law.numbers())>);
-  constexpr int memory = [] {
-    if constexpr (requires { Law::memory; }) return points_of<Shape>(kinematics) * Law::memory;
-    return 0;
-  }();
-  constexpr int at_motion = 2 * n + 1 + count, at_memory = at_motion + 2 * n;
+auto averaged_work(const Law& law, const Nodal<double, Shape>& coordinates, double depth,
+                   const std::vector<StateOfElement<Shape>>& states) {
+  constexpr int dofs = dofs_of<Shape>, count = static_cast<int>(std::tuple_size_v<decltype(law.numbers())>);
+  constexpr int memory = points_of<Shape>(kinematics) * memory_at<Law, kinematics>();
+  constexpr int at_motion = dofs + 1 + count, at_memory = at_motion + dofs;
   constexpr int inputs = memory > 0 ? at_memory + memory : at_motion;
   using Probe = Dual<inputs>;
-  Mat<Probe, 2, n> X;
-  for (int k = 0; k < 2 * n; ++k) X.data()[k] = Probe::seed(coordinates.data()[k], k);
-  const auto probed = law.with(seeded_numbers<Probe>(law, 2 * n + 1));
-  ElementWork<n, static_cast<std::size_t>(count)> out;
+  Nodal<Probe, Shape> X;
+  for (int k = 0; k < dofs; ++k) X.data()[k] = Probe::seed(coordinates.data()[k], k);
+  const auto probed = law.with(seeded_numbers<Probe>(law, dofs + 1));
+  ElementWork<Shape, static_cast<std::size_t>(count)> out;
   for (const auto& state : states) {
-    Mat<Probe, 2, n> u;
+    Nodal<Probe, Shape> u;
     Vec<Probe, memory> before, after;
-    for (int k = 0; k < 2 * n; ++k)
+    for (int k = 0; k < dofs; ++k)
       u.data()[k] = memory > 0 ? Probe::seed(state.motion.data()[k], at_motion + k) : Probe(state.motion.data()[k]);
     for (int m = 0; m < memory; ++m) before[m] = Probe::seed(state.last_memory[m], at_memory + m);
     const auto forces = averaged_forces<true, Probe, Shape, kinematics, Probe>(
-        probed, X, u, Probe::seed(depth, 2 * n), ElementMemory<Probe>(before.data(), state.branches), after.data());
+        probed, X, u, Probe::seed(depth, dofs), ElementMemory<Probe>(before.data(), state.branches), after.data());
     Probe work(0.0);
-    for (int k = 0; k < 2 * n; ++k) work += state.weight.data()[k] * forces.data()[k];
+    for (int k = 0; k < dofs; ++k) work += state.weight.data()[k] * forces.data()[k];
     for (int m = 0; m < memory; ++m) work += state.memory[m] * after[m];
-    for (int k = 0; k < 2 * n; ++k) out.coordinates.data()[k] += work.d[k];
-    out.depth += work.d[2 * n];
-    for (int m = 0; m < count; ++m) out.law[m] += work.d[2 * n + 1 + m];
+    for (int k = 0; k < dofs; ++k) out.coordinates.data()[k] += work.d[k];
+    out.depth += work.d[dofs];
+    for (int m = 0; m < count; ++m) out.law[m] += work.d[dofs + 1 + m];
     if constexpr (memory > 0) {
       out.motion.emplace_back();
-      for (int k = 0; k < 2 * n; ++k) out.motion.back().data()[k] = work.d[at_motion + k];
+      for (int k = 0; k < dofs; ++k) out.motion.back().data()[k] = work.d[at_motion + k];
       out.last_memory.emplace_back(work.d.template segment<memory>(at_memory).matrix());
     }
   }
@@ -164,11 +161,11 @@ auto averaged_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinat
 }
 
 /// S = sum_n (u_n a_n^T + a_n u_n^T).
-template <int nodes>
-Mat<double, 2 * nodes> joined(const std::vector<StateOfElement<nodes>>& states) {
-  Mat<double, 2 * nodes> half = Mat<double, 2 * nodes>::Zero();
+template <class Shape>
+Mat<double, dofs_of<Shape>> joined(const std::vector<StateOfElement<Shape>>& states) {
+  Mat<double, dofs_of<Shape>> half = Mat<double, dofs_of<Shape>>::Zero();
   for (const auto& state : states) {
-    const Eigen::Map<const Vec<double, 2 * nodes>> u(state.motion.data()), a(state.weight.data());
+    const Eigen::Map<const Vec<double, dofs_of<Shape>>> u(state.motion.data()), a(state.weight.data());
     half += u.lazyProduct(a.transpose());
   }
   return half + half.transpose();
@@ -178,13 +175,13 @@ Mat<double, 2 * nodes> joined(const std::vector<StateOfElement<nodes>>& states) 
 /// itself, and to `by_law`, where that is wanted.
 template <class Shape, Kinematics kinematics, class Law, std::size_t count>
 void add_joined(const Law& law, const Gradient<double, Shape, kinematics>& gradient,
-                const Mat<double, 2 * Shape::nodes>& S, Wanted wanted, ByGradient<Shape, kinematics>& by,
+                const Mat<double, dofs_of<Shape>>& S, Wanted wanted, ByGradient<Shape, kinematics>& by,
                 std::array<double, count>& by_law) {
   using Probe = Dual<static_cast<int>(count)>;
   const auto probed = law.with(seeded_numbers<Probe>(law, 0));
   for (int a = 0; a < Shape::nodes; ++a)
-    for (int i = 0; i < 2; ++i) {
-      const Mat<double, 2, Shape::nodes> motion(S.col(2 * a + i).data());
+    for (int i = 0; i < Shape::dimension; ++i) {
+      const Nodal<double, Shape> motion(S.col(Shape::dimension * a + i).data());
       const auto H = gradient.of(motion), P = law.stress(H);
       const auto on_unit = [&](const auto& stress) {  // B e : stress
         auto sum = 0.0 * stress(0, 0);
@@ -206,22 +203,22 @@ void add_joined(const Law& law, const Gradient<double, Shape, kinematics>& gradi
 
 /// The derivatives of the work of one element. `law`: in double; `depth`: thickness of a plane body.
 template <class Shape, Kinematics kinematics, class Law>
-auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinates, double depth,
-                  const std::vector<StateOfElement<Shape::nodes>>& states, Wanted wanted = {}) {
+auto element_work(const Law& law, const Nodal<double, Shape>& coordinates, double depth,
+                  const std::vector<StateOfElement<Shape>>& states, Wanted wanted = {}) {
   if constexpr (detail::averages<Law, kinematics>())
     if (law.is_finite) return detail::averaged_work<Shape, kinematics>(law, coordinates, depth, states);
   constexpr int n = Shape::nodes, points = points_of<Shape>(kinematics);
   constexpr std::size_t count = std::tuple_size_v<decltype(law.numbers())>;
-  ElementWork<n, count> out;
+  ElementWork<Shape, count> out;
   if constexpr (requires { Law::memory; })
     for (const auto& state : states) {
-      out.motion.emplace_back(Mat<double, 2, n>::Zero());
+      out.motion.emplace_back(Nodal<double, Shape>::Zero());
       out.last_memory.emplace_back(state.last_memory.size());
     }
   std::array<Gradient<double, Shape, kinematics>, points> gradients;
   std::array<detail::ByGradient<Shape, kinematics>, points> by;
   const bool joins = detail::IsLinear<Law> && states.size() > n;  // a column takes half the time of a state
-  Mat<double, 2 * n> S;
+  Mat<double, dofs_of<Shape>> S;
   if (joins) S = detail::joined(states);
   int q = 0;
   for_each_gradient<double, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
@@ -234,17 +231,17 @@ auto element_work(const Law& law, const Mat<double, 2, Shape::nodes>& coordinate
       const auto H = gradient.of(state.motion), A = gradient.of(state.weight);
       detail::PointWork<layout_of(kinematics)> work;
       if constexpr (requires { Law::memory; }) {
-        using Memory = Vec<double, Law::memory>;
-        const Eigen::Index remembered = q * Law::memory;
-        const Memory b = state.memory.template segment<Law::memory>(remembered) / gradient.volume;
+        constexpr int remembered = memory_at<Law, kinematics>();
+        using Memory = Vec<double, remembered>;
+        const Eigen::Index first = q * remembered;
+        const Memory b = state.memory.template segment<remembered>(first) / gradient.volume;
         Memory by_before;
-        const int branch = state.branches ? state.branches[remembered] : flow_branch::by_values;
+        const int branch = state.branches ? state.branches[first] : flow_branch::by_values;
         work = detail::point_work(law, H, A, gradient.volume, out.law,
-                                  Memory(state.last_memory.template segment<Law::memory>(remembered)), branch, b,
-                                  by_before);
-        out.last_memory[s].template segment<Law::memory>(remembered) = gradient.volume * by_before;
+                                  Memory(state.last_memory.template segment<remembered>(first)), branch, b, by_before);
+        out.last_memory[s].template segment<remembered>(first) = gradient.volume * by_before;
         for (int a = 0; a < n; ++a)
-          for (int i = 0; i < 2; ++i)
+          for (int i = 0; i < Shape::dimension; ++i)
             gradient.for_each(i, a, [&](int p, int r, double x) {
               out.motion[s](i, a) += gradient.volume * work.by_gradient(p, r) * x;
             });

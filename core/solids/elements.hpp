@@ -37,6 +37,17 @@ class ElementMemory {
   const int* branches_;
 };
 
+/// Dofs of an element.
+template <class Shape>
+inline constexpr int dofs_of = Shape::dimension* Shape::nodes;
+
+/// Numbers that a law remembers at a point of an element of these kinematics; 0: it does not remember.
+template <class Law, Kinematics kinematics>
+constexpr int memory_at() {
+  if constexpr (requires { Law::memory_in(layout_of(kinematics)); }) return Law::memory_in(layout_of(kinematics));
+  return 0;
+}
+
 namespace detail {
 
 /// Whether elements of a law can have a mean dilatation at finite strain.
@@ -49,16 +60,15 @@ constexpr bool averages() {
 
 /// Forces of an element with mean dilatation at finite strain. `flows`: from `memory`, to `after` where that is given.
 template <bool flows, class T, class Shape, Kinematics kinematics, class G, class Law>
-Mat<T, 2, Shape::nodes> averaged_forces(const Law& law, const Mat<G, 2, Shape::nodes>& coordinates,
-                                        const Mat<T, 2, Shape::nodes>& u, const G& depth, ElementMemory<T> memory,
-                                        T* after = nullptr) {
+Nodal<T, Shape> averaged_forces(const Law& law, const Nodal<G, Shape>& coordinates, const Nodal<T, Shape>& u,
+                                const G& depth, ElementMemory<T> memory, T* after = nullptr) {
   using Element = MeanDilatation<T, G, Shape, kinematics>;
   const Element element(coordinates, depth, u);
   std::array<typename Element::Strain, Element::points> P;
   for (std::size_t q = 0; q < Element::points; ++q) {
     if constexpr (requires { Law::memory; }) {
       [[maybe_unused]] const int branch = memory.branch();
-      Vec<T, Law::memory> remembered = memory.template take<Law::memory>();
+      Vec<T, memory_at<Law, kinematics>()> remembered = memory.template take<memory_at<Law, kinematics>()>();
       if constexpr (flows) remembered = law.flow(element.strain(q), remembered, branch);
       if (after) after = std::copy(remembered.begin(), remembered.end(), after);
       P[q] = law.stress(element.strain(q), remembered);
@@ -71,25 +81,25 @@ Mat<T, 2, Shape::nodes> averaged_forces(const Law& law, const Mat<G, 2, Shape::n
 
 }  // namespace detail
 
-/// Internal nodal forces, 2 x nodes. G, the scalar of the geometry, is T, or double where no derivative rides on it.
+/// Internal nodal forces, dimension x nodes. G, the scalar of the geometry, is T, or double where no derivative rides on it.
 /// `memory`: that the forces are at, of a law that remembers.
-template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class G = T, class Law>
-Mat<T, 2, Shape::nodes> element_forces(const Law& law, const std::type_identity_t<Mat<G, 2, Shape::nodes>>& coordinates,
-                                       const Mat<T, 2, Shape::nodes>& u, const std::type_identity_t<G>& depth = G(1),
-                                       ElementMemory<T> memory = {}) {
+template <class T, class Shape, Kinematics kinematics = plain_kinematics<Shape>, class G = T, class Law>
+Nodal<T, Shape> element_forces(const Law& law, const std::type_identity_t<Nodal<G, Shape>>& coordinates,
+                               const Nodal<T, Shape>& u, const std::type_identity_t<G>& depth = G(1),
+                               ElementMemory<T> memory = {}) {
   if constexpr (detail::averages<Law, kinematics>())
     if (law.is_finite)
       return detail::averaged_forces<false, T, Shape, kinematics, G>(law, coordinates, u, depth, memory);
-  Mat<T, 2, Shape::nodes> forces = Mat<T, 2, Shape::nodes>::Constant(T(0));
+  Nodal<T, Shape> forces = Nodal<T, Shape>::Constant(T(0));
   for_each_gradient<G, Shape, kinematics>(coordinates, depth, [&](const auto& gradient) {
     Tensor<T, layout_of(kinematics)> sigma;
     if constexpr (requires { Law::memory; })
-      sigma = law.stress(gradient.of(u), memory.template take<Law::memory>());
+      sigma = law.stress(gradient.of(u), memory.template take<memory_at<Law, kinematics>()>());
     else
       sigma = law.stress(gradient.of(u));
     for (int k = 0; k < sigma.size; ++k) sigma[k] = sigma[k] * gradient.volume;
     for (int a = 0; a < Shape::nodes; ++a)
-      for (int i = 0; i < 2; ++i)
+      for (int i = 0; i < Shape::dimension; ++i)
         gradient.for_each(i, a, [&](int p, int q, const G& b) { forces(i, a) += sigma(p, q) * b; });
   });
   return forces;
@@ -119,9 +129,10 @@ Mat<T, size> material_tangent(const Law& law, const Tensor<T, layout>& H, const 
   const Tensor<Probe, layout> probe = seeded<Probe>(H);
   Tensor<Probe, layout> sigma;
   if constexpr (requires { Law::memory; }) {
+    constexpr int remembered = Law::memory_in(layout);
     const int branch = before.branch();
-    const auto memory = before.template take<Law::memory>();
-    const Vec<Probe, Law::memory> constant = memory.unaryExpr([](const T& x) { return Probe(x); });
+    const auto memory = before.template take<remembered>();
+    const Vec<Probe, remembered> constant = memory.unaryExpr([](const T& x) { return Probe(x); });
     sigma = law.stress(probe, law.flow(probe, constant, branch));
   } else {
     sigma = law.stress(probe);
@@ -133,15 +144,15 @@ Mat<T, size> material_tangent(const Law& law, const Tensor<T, layout>& H, const 
 
 /// Tangent of an element with mean dilatation at finite strain.
 template <class T, class Shape, Kinematics kinematics, class Law>
-Mat<T, 2 * Shape::nodes> averaged_tangent(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates,
-                                          const Mat<T, 2, Shape::nodes>& u, const T& depth, ElementMemory<T> before) {
-  constexpr int n = Shape::nodes;
-  using Probe = Dual<2 * n, T>;
-  Mat<Probe, 2, n> seeded;
-  for (int k = 0; k < 2 * n; ++k) seeded.data()[k] = Probe::seed(u.data()[k], k);
-  Mat<Probe, 2, n> forces;
+Mat<T, dofs_of<Shape>> averaged_tangent(const Law& law, const Nodal<T, Shape>& coordinates, const Nodal<T, Shape>& u,
+                                        const T& depth, ElementMemory<T> before) {
+  constexpr int dofs = dofs_of<Shape>;
+  using Probe = Dual<dofs, T>;
+  Nodal<Probe, Shape> seeded;
+  for (int k = 0; k < dofs; ++k) seeded.data()[k] = Probe::seed(u.data()[k], k);
+  Nodal<Probe, Shape> forces;
   if constexpr (requires { Law::memory; }) {
-    constexpr int count = points_of<Shape>(kinematics) * Law::memory;
+    constexpr int count = points_of<Shape>(kinematics) * memory_at<Law, kinematics>();
     const int* const branches = before.branches();
     const Vec<T, count> numbers = before.template take<count>();
     const Vec<Probe, count> constant = numbers.unaryExpr([](const T& x) { return Probe(x); });
@@ -150,25 +161,24 @@ Mat<T, 2 * Shape::nodes> averaged_tangent(const Law& law, const Mat<T, 2, Shape:
   } else {
     forces = averaged_forces<true, Probe, Shape, kinematics, T>(law, coordinates, seeded, depth, {});
   }
-  Mat<T, 2 * n> K;
-  for (int k = 0; k < 2 * n; ++k) K.row(k) = forces.data()[k].d;
+  Mat<T, dofs> K;
+  for (int k = 0; k < dofs; ++k) K.row(k) = forces.data()[k].d;
   return K;
 }
 
 }  // namespace detail
 
-/// Tangent, (2 nodes) x (2 nodes), node-major. `before`: the memory that a law which remembers flows from.
-template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
-Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates,
-                                         const Mat<T, 2, Shape::nodes>& u, const T& depth = T(1),
-                                         ElementMemory<T> before = {}) {
-  constexpr int n = Shape::nodes;
+/// Tangent, dofs x dofs, node-major. `before`: the memory that a law which remembers flows from.
+template <class T, class Shape, Kinematics kinematics = plain_kinematics<Shape>, class Law>
+Mat<T, dofs_of<Shape>> element_tangent(const Law& law, const Nodal<T, Shape>& coordinates, const Nodal<T, Shape>& u,
+                                       const T& depth = T(1), ElementMemory<T> before = {}) {
+  constexpr int n = Shape::nodes, D = Shape::dimension;
   if constexpr (detail::averages<Law, kinematics>())
     if (law.is_finite) return detail::averaged_tangent<T, Shape, kinematics>(law, coordinates, u, depth, before);
   using Stress = Tensor<T, layout_of(kinematics)>;
   // Derivatives of a symmetric tangent are dear, so they are made of its lower blocks alone.
   constexpr bool mirrors = tells_constants<T>;
-  Mat<T, 2 * n> K = Mat<T, 2 * n>::Constant(T(0));
+  Mat<T, D* n> K = Mat<T, D * n>::Constant(T(0));
   Mat<T, Stress::size> at_unit_volume;
   if constexpr (detail::IsLinear<Law>)
     at_unit_volume = detail::material_tangent(law, Stress::constant(T(0)), T(1), before);
@@ -179,31 +189,31 @@ Mat<T, 2 * Shape::nodes> element_tangent(const Law& law, const Mat<T, 2, Shape::
     else
       C = detail::material_tangent(law, gradient.of(u), gradient.volume, before);
     for (int b = 0; b < n; ++b)
-      for (int k = 0; k < 2; ++k) {
+      for (int k = 0; k < D; ++k) {
         auto column = Stress::constant(T(0));  // dsigma/du_kb
         gradient.for_each(k, b, [&](int p, int q, const T& x) {
           for (int c = 0; c < column.size; ++c) column[c] += C(c, column.place(p, q)) * x;
         });
         for (int a = mirrors ? b : 0; a < n; ++a)
-          for (int i = 0; i < 2; ++i)
-            gradient.for_each(i, a, [&](int p, int q, const T& x) { K(a * 2 + i, b * 2 + k) += column(p, q) * x; });
+          for (int i = 0; i < D; ++i)
+            gradient.for_each(i, a, [&](int p, int q, const T& x) { K(a * D + i, b * D + k) += column(p, q) * x; });
       }
   });
   if constexpr (mirrors)
     for (int b = 1; b < n; ++b)
       for (int a = 0; a < b; ++a)
-        K.template block<2, 2>(2 * a, 2 * b) = K.template block<2, 2>(2 * b, 2 * a).transpose();
+        K.template block<D, D>(D * a, D * b) = K.template block<D, D>(D * b, D * a).transpose();
   return K;
 }
 
 /// Strain energy int W dV, of a law that remembers at a memory.
-template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
-T element_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
-                 const T& depth = T(1), ElementMemory<T> memory = {}) {
+template <class T, class Shape, Kinematics kinematics = plain_kinematics<Shape>, class Law>
+T element_energy(const Law& law, const Nodal<T, Shape>& coordinates, const Nodal<T, Shape>& u, const T& depth = T(1),
+                 ElementMemory<T> memory = {}) {
   T energy{};
   for_each_strain_in<T, Shape, kinematics>(law.is_finite, coordinates, depth, u, [&](const auto& H, const T& volume) {
     if constexpr (requires { Law::memory; })
-      energy += law.energy(H, memory.template take<Law::memory>()) * volume;
+      energy += law.energy(H, memory.template take<memory_at<Law, kinematics>()>()) * volume;
     else
       energy += law.energy(H) * volume;
   });
@@ -211,14 +221,15 @@ T element_energy(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, con
 }
 
 /// The memory that displacements leave, point by point, of the one before. `after` has room for it.
-template <class T, class Shape, Kinematics kinematics = Kinematics::plane, class Law>
-void element_flow(const Law& law, const Mat<T, 2, Shape::nodes>& coordinates, const Mat<T, 2, Shape::nodes>& u,
-                  ElementMemory<T> before, T* after) {
+template <class T, class Shape, Kinematics kinematics = plain_kinematics<Shape>, class Law>
+void element_flow(const Law& law, const Nodal<T, Shape>& coordinates, const Nodal<T, Shape>& u, ElementMemory<T> before,
+                  T* after) {
   for_each_strain_in<T, Shape, kinematics>(law.is_finite, coordinates, T(1), u, [&](const auto& H, const T&) {
     const int branch = before.branch();
-    const Vec<T, Law::memory> flown = law.flow(H, before.template take<Law::memory>(), branch);
+    const Vec<T, memory_at<Law, kinematics>()> flown =
+        law.flow(H, before.template take<memory_at<Law, kinematics>()>(), branch);
     std::copy(flown.begin(), flown.end(), after);
-    after += Law::memory;
+    after += memory_at<Law, kinematics>();
   });
 }
 

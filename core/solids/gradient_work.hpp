@@ -24,15 +24,15 @@ struct ByGradient {
 /// Moves derivatives by the exchange of all points to their other parts. It is (mean - dilatation) / 3.
 template <class Gradients, class ByGradients>
 void pull_back_exchange(const Gradients& gradients, ByGradients& by) {
-  constexpr int nodes = std::decay_t<decltype(gradients[0])>::nodes;
+  using Values = std::decay_t<decltype(by[0].dN)>;
   double volume = 0;
-  Mat<double, 2, nodes> of_mean = Mat<double, 2, nodes>::Zero();
+  Values of_mean = Values::Zero();
   for (std::size_t q = 0; q < gradients.size(); ++q) {
     volume += gradients[q].volume;
     of_mean += by[q].exchange / 3;
   }
   for (std::size_t q = 0; q < gradients.size(); ++q) {
-    const Mat<double, 2, nodes> of_dilatation = of_mean * (gradients[q].volume / volume) - by[q].exchange / 3;
+    const Values of_dilatation = of_mean * (gradients[q].volume / volume) - by[q].exchange / 3;
     by[q].dN += of_dilatation;
     if constexpr (std::decay_t<decltype(gradients[0])>::revolved) by[q].hoop += of_dilatation.row(0).transpose();
     by[q].volume -= 3 / volume * of_mean.cwiseProduct(gradients[q].exchange).sum();
@@ -42,15 +42,15 @@ void pull_back_exchange(const Gradients& gradients, ByGradients& by) {
 /// Adds what one point's derivatives make of the coordinates; returns those by the depth, over 1 / depth.
 template <class Shape, Kinematics kinematics>
 double pull_back_gradient(const Gradient<double, Shape, kinematics>& gradient, const ByGradient<Shape, kinematics>& by,
-                          Mat<double, 2, Shape::nodes>& coordinates) {
+                          Nodal<double, Shape>& coordinates) {
   const double of_volume = by.volume * gradient.volume;
-  const Mat<double, 2> turned = gradient.dN.lazyProduct(by.dN.transpose());
+  const Mat<double, Shape::dimension> turned = gradient.dN.lazyProduct(by.dN.transpose());
   coordinates += of_volume * gradient.dN - turned.lazyProduct(gradient.dN);
   if constexpr (is_of_revolution(kinematics)) {
     coordinates.row(0) += (of_volume - by.hoop.dot(gradient.hoop)) * gradient.hoop.transpose();
     return 0;
   }
-  return of_volume;
+  return is_in_space(kinematics) ? 0 : of_volume;  // (in space there is no depth)
 }
 
 }  // namespace stickslip::detail

@@ -155,20 +155,38 @@ inline const char* fault_of(const Material& material, Kinematics kinematics, boo
       material);
 }
 
-/// Numbers that a point of a body of a material remembers. `bars`: it consists of them.
-inline int memory_of(const Material& material, bool bars) {
+/// Numbers that a point of a continuum of a material remembers, and a bar of it.
+inline int memory_of(const Material& material, TensorLayout layout) {
   return std::visit(
       [&]<class M>(const M&) {
-        if constexpr (FillsBars<M>)
-          if (bars) return memory_of<BarLawOf<M>>();
-        if constexpr (FillsContinuum<M>) return bars ? 0 : memory_of<LawOf<M>>();
+        if constexpr (FillsContinuum<M>)
+          if constexpr (Remembers<LawOf<M>>) return LawOf<M>::memory_in(layout);
+        return 0;
+      },
+      material);
+}
+inline int memory_of_bar(const Material& material) {
+  return std::visit(
+      []<class M>(const M&) {
+        if constexpr (FillsBars<M>) return memory_of<BarLawOf<M>>();
         return 0;
       },
       material);
 }
 
 /// Whether bodies of a material remember how they flowed.
-inline bool flows(const Material& material) { return memory_of(material, false) > 0; }
+inline bool flows(const Material& material) { return memory_of(material, TensorLayout::plane4) > 0; }
+
+/// Whether a continuum of a material hardly changes its volume.
+inline bool is_nearly_incompressible(const Material& material) {
+  constexpr double nearly = 0.45;
+  return std::visit(
+      []<class M>(const M& of) {
+        if constexpr (requires { of.nu; }) return of.nu.value > nearly;
+        return false;
+      },
+      material);
+}
 
 static_assert(TwoNodeLaw<SpringLaw<double>>);
 

@@ -6,7 +6,7 @@
 /// P_bar is the stress of F_bar: of a material with an energy int W(F_bar) dV is the element's, and its tangent
 /// symmetric. It is the limit of small strain of continuum.hpp, and written in H = F - I, so that a small strain does
 /// not vanish beside one: F_bar - I = H + (a - 1) F. A quadrilateral of four nodes in plane strain, where F_bar_33 = a,
-/// and of revolution. An inverted element has strains that are not numbers. Source: [H80], [MOS90]
+/// and of revolution; a hexahedron of eight. An inverted element has strains that are not numbers. Source: [H80], [MOS90]
 #pragma once
 
 #include "core/solids/continuum.hpp"
@@ -20,9 +20,9 @@ class MeanDilatation {
  public:
   static constexpr int nodes = Shape::nodes;
   static constexpr std::size_t points = static_cast<std::size_t>(points_of<Shape>(kinematics));
-  using Strain = Tensor<T, TensorLayout::hoop5>;
+  using Strain = Tensor<T, layout_of(kinematics)>;
 
-  MeanDilatation(const Mat<G, 2, nodes>& coordinates, const G& depth, const Mat<T, 2, nodes>& u) {
+  MeanDilatation(const Nodal<G, Shape>& coordinates, const G& depth, const Nodal<T, Shape>& u) {
     using std::log1p, stickslip::log1p;
     const auto& quadrature = detail::quadrature_of<Shape, kinematics>();
     std::array<T, points> growth;  // J - 1
@@ -58,9 +58,9 @@ class MeanDilatation {
   const G& volume(std::size_t q) const { return gradients_[q].volume; }
 
   /// Nodal forces of stresses P_bar, one a point.
-  Mat<T, 2, nodes> forces(const std::array<Strain, points>& P) const {
-    Mat<T, 2, nodes> R = Mat<T, 2, nodes>::Constant(T(0)), mean = R;  // mean: d theta V
-    T pressure{};                                                     // of a/3 P_bar : F, over the volume
+  Nodal<T, Shape> forces(const std::array<Strain, points>& P) const {
+    Nodal<T, Shape> R = Nodal<T, Shape>::Constant(T(0)), mean = R;  // mean: d theta V
+    T pressure{};                                                   // of a/3 P_bar : F, over the volume
     for (std::size_t q = 0; q < points; ++q) {
       const auto& gradient = gradients_[q];
       const Strain& H = H_[q];
@@ -68,15 +68,9 @@ class MeanDilatation {
       for (int i = 0; i < 3; ++i) work += P[q](i, i);
       const T share = scale_[q] * work * gradient.volume / T(3);
       pressure += share;
-      const T out = T(1) + H(2, 2), J = J_[q] / out;
-      Strain inverse;  // F^-T
-      inverse(0, 0) = (T(1) + H(1, 1)) / J;
-      inverse(1, 1) = (T(1) + H(0, 0)) / J;
-      inverse(0, 1) = -H(1, 0) / J;
-      inverse(1, 0) = -H(0, 1) / J;
-      inverse(2, 2) = T(1) / out;
+      const Strain inverse = inverse_transposed(H, J_[q]);
       for (int a = 0; a < nodes; ++a)
-        for (int i = 0; i < 2; ++i) {
+        for (int i = 0; i < Shape::dimension; ++i) {
           T along{}, change{};
           gradient.for_each(i, a, [&](int p, int r, const G& b) {
             along += P[q](p, r) * b;
@@ -87,11 +81,27 @@ class MeanDilatation {
         }
     }
     const T over = pressure / (theta_ * volume_);
-    for (int k = 0; k < 2 * nodes; ++k) R.data()[k] += over * mean.data()[k];
+    for (int k = 0; k < Shape::dimension * nodes; ++k) R.data()[k] += over * mean.data()[k];
     return R;
   }
 
  private:
+  /// F^-T; J: det F of three dimensions.
+  static Strain inverse_transposed(const Strain& H, const T& J) {
+    Strain inverse;
+    if constexpr (Strain::in_space) {
+      inverse.matrix() = cofactors<T>(H.plus_one()) / J;
+    } else {
+      const T out = T(1) + H(2, 2), area = J / out;
+      inverse(0, 0) = (T(1) + H(1, 1)) / area;
+      inverse(1, 1) = (T(1) + H(0, 0)) / area;
+      inverse(0, 1) = -H(1, 0) / area;
+      inverse(1, 0) = -H(0, 1) / area;
+      inverse(2, 2) = T(1) / out;
+    }
+    return inverse;
+  }
+
   std::array<Gradient<G, Shape, kinematics>, points> gradients_;
   std::array<Strain, points> H_, strain_;
   std::array<T, points> scale_, J_;
@@ -102,8 +112,8 @@ class MeanDilatation {
 /// Calls f(H, volume) at each point of an element with the strain that its law is given: of mean dilatation at finite
 /// strain F_bar - I, else the displacement gradient.
 template <class T, class Shape, Kinematics kinematics, class F>
-void for_each_strain_in(bool finite_strain, const Mat<T, 2, Shape::nodes>& coordinates, const T& depth,
-                        const Mat<T, 2, Shape::nodes>& u, F&& f) {
+void for_each_strain_in(bool finite_strain, const Nodal<T, Shape>& coordinates, const T& depth,
+                        const Nodal<T, Shape>& u, F&& f) {
   if constexpr (has_mean_dilatation(kinematics))
     if (finite_strain) {
       const MeanDilatation<T, T, Shape, kinematics> element(coordinates, depth, u);

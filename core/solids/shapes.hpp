@@ -1,5 +1,7 @@
-/// Shape functions and quadrature of the continuum elements: one small struct an element. Nodes are numbered
-/// counter-clockwise, corners first, then the middles of the sides in turn (0-1, 1-2, ...).
+/// Shape functions and quadrature of the continuum elements: one small struct an element. In the plane nodes are
+/// numbered counter-clockwise, corners first, then the middles of the sides in turn (0-1, 1-2, ...). In space they are
+/// numbered as in VTK: nodes 0, 1, 2 of a tetrahedron are counter-clockwise seen from node 3; of a hexahedron
+/// come first the nodes at z = -1, counter-clockwise seen from above, then those at z = 1.
 ///
 /// Rules: all stiffness rows that are no rigid motion have rank (tests: continuum_test). Three-node triangles have one
 /// point in the plane and three where the circumference turns with r (one would leave a rotation about its point free);
@@ -15,10 +17,10 @@ namespace stickslip {
 
 /// Shape functions at a natural coordinate: their weight in the quadrature, gradients with respect to the natural
 /// coordinates (one column a node) and values.
-template <int n>
+template <int n, int D = 2>
 struct ShapePoint {
   double weight = 0;
-  Mat<double, 2, n> gradient;
+  Mat<double, D, n> gradient;
   Vec<double, n> value;
 };
 
@@ -43,6 +45,7 @@ inline std::array<std::array<double, 3>, 3> three_points() {
 /// Three-node triangle, one point (exact for a constant strain).
 struct Tri3 {
   static constexpr int nodes = 3, corners = 3, dimension = 2;
+  static constexpr bool is_simplex = true;
   using Point = ShapePoint<nodes>;
   static Point at(double x, double y, double weight) {
     Point p;
@@ -58,6 +61,7 @@ struct Tri3 {
 /// Four-node quadrilateral, 2 x 2 points.
 struct Quad4 {
   static constexpr int nodes = 4, corners = 4, dimension = 2;
+  static constexpr bool is_simplex = false;
   using Point = ShapePoint<nodes>;
   static Point at(double x, double y, double weight) {
     static constexpr double sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1};
@@ -80,6 +84,7 @@ struct Quad4 {
 /// Six-node triangle, three points.
 struct Tri6 {
   static constexpr int nodes = 6, corners = 3, dimension = 2;
+  static constexpr bool is_simplex = true;
   using Point = ShapePoint<nodes>;
   static Point at(double x, double y, double weight) {
     const double l[3] = {1 - x - y, x, y}, dx[3] = {-1, 1, 0}, dy[3] = {-1, 0, 1};
@@ -103,6 +108,7 @@ struct Tri6 {
 /// Eight-node quadrilateral (serendipity), 3 x 3 points.
 struct Quad8 {
   static constexpr int nodes = 8, corners = 4, dimension = 2;
+  static constexpr bool is_simplex = false;
   using Point = ShapePoint<nodes>;
   static Point at(double x, double y, double weight) {
     static constexpr double sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1};
@@ -131,7 +137,53 @@ struct Quad8 {
   static std::array<Point, 9> quadrature_of_revolution() { return quadrature(); }
 };
 
-/// Natural coordinates of a corner, counted on beyond the last from the first.
+/// Four-node tetrahedron, one point (exact for a constant strain).
+struct Tet4 {
+  static constexpr int nodes = 4, corners = 4, dimension = 3;
+  static constexpr bool is_simplex = true;
+  using Point = ShapePoint<nodes, dimension>;
+  static Point at(double x, double y, double z, double weight) {
+    Point p;
+    p.weight = weight;
+    p.gradient << -1, 1, 0, 0, -1, 0, 1, 0, -1, 0, 0, 1;
+    p.value << 1 - x - y - z, x, y, z;
+    return p;
+  }
+  static std::array<Point, 1> quadrature() { return {at(0.25, 0.25, 0.25, 1.0 / 6)}; }
+};
+
+/// Eight-node hexahedron, 2 x 2 x 2 points.
+struct Hex8 {
+  static constexpr int nodes = 8, corners = 8, dimension = 3;
+  static constexpr bool is_simplex = false;
+  using Point = ShapePoint<nodes, dimension>;
+  static Point at(double x, double y, double z, double weight) {
+    static constexpr double sx[8] = {-1, 1, 1, -1, -1, 1, 1, -1}, sy[8] = {-1, -1, 1, 1, -1, -1, 1, 1},
+                            sz[8] = {-1, -1, -1, -1, 1, 1, 1, 1};
+    Point p;
+    p.weight = weight;
+    for (int a = 0; a < nodes; ++a) {
+      const double u = 1 + sx[a] * x, v = 1 + sy[a] * y, w = 1 + sz[a] * z;
+      p.gradient(0, a) = 0.125 * sx[a] * v * w;
+      p.gradient(1, a) = 0.125 * sy[a] * u * w;
+      p.gradient(2, a) = 0.125 * sz[a] * u * v;
+      p.value[a] = 0.125 * u * v * w;
+    }
+    return p;
+  }
+  static std::array<Point, 8> quadrature() {
+    const double g = 1 / std::sqrt(3.0);
+    std::array<Point, 8> points;
+    for (int q = 0; q < 8; ++q) points[q] = at(q & 1 ? g : -g, q & 2 ? g : -g, q & 4 ? g : -g, 1);
+    return points;
+  }
+};
+
+/// Values at the nodes of an element, one column a node.
+template <class T, class Shape>
+using Nodal = Mat<T, Shape::dimension, Shape::nodes>;
+
+/// Natural coordinates of a corner of a plane element, counted on beyond the last from the first.
 template <class Shape>
 Vec<double, 2> natural_corner(int corner) {
   const int k = corner % Shape::corners;
@@ -154,6 +206,10 @@ void with_shape(ElementShape shape, F&& f) {
       return f(Tri6{});
     case ElementShape::quad8:
       return f(Quad8{});
+    case ElementShape::tet4:
+      return f(Tet4{});
+    case ElementShape::hex8:
+      return f(Hex8{});
   }
 }
 

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/algebra/described.hpp"
-#include "core/mesh/ring.hpp"
+#include "core/mesh/extruded.hpp"
 #include "studies/input/ranges.hpp"
 #include "studies/input/scene_reading.hpp"
 
@@ -31,6 +31,8 @@ nlohmann::ordered_json as_json(const std::array<X, n>& list) {
   for (const X& x : list) json.push_back(as_json(x));
   return json;
 }
+
+inline nlohmann::ordered_json as_json(const char* text) { return nlohmann::ordered_json::parse(text); }
 
 template <class How>
 concept HasExample = requires(const How& how) {
@@ -57,6 +59,16 @@ inline void read_key(const JsonNode& object, SceneReading& reading, const char* 
                      const Place2D&) {
   to = reading.required_vector(object, key, reading.dimension());
 }
+inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::vector<Number>& to,
+                     const Place3D&) {
+  to = reading.required_vector(object, key, 3);
+}
+/// (Defined beside the list of meshes: mesh_kinds.cpp.)
+void read_key(const JsonNode& object, SceneReading& reading, const char* key, PlaneMesh& to, const MeshInPlane&);
+inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::vector<Number>& to,
+                     const Direction3D& how) {
+  if (const auto given = object.find(key)) to = reading.direction(*given, how.what);
+}
 inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::array<Number, 2>& to,
                      const Place2D&) {
   const auto place = reading.required_vector(object, key, 2);
@@ -75,14 +87,25 @@ inline void read_key(const JsonNode& object, SceneReading& reading, const char* 
 inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, int& to, const Count&) {
   if (const auto given = object.find(key)) to = reading.count(*given, 1).value_or(to);
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::array<int, 2>& to,
-                     const Counts&) {
-  to = {1, 1};
+/// As many counts as there are in `to`.
+template <class Cells>
+void read_cells(const JsonNode& object, SceneReading& reading, const char* key, Cells& to) {
+  for (int& count : to) count = 1;
   const auto given = object.find(key);
-  const auto both = given ? given->array(2, "an array of 2 whole numbers >= 1") : std::nullopt;
-  for (int i = 0; both && i < 2; ++i) to[i] = reading.count((*both)[i], 1).value_or(1);
+  const auto all = given ? given->array(to.size(), "an array of " + std::to_string(to.size()) + " whole numbers >= 1")
+                         : std::nullopt;
+  for (std::size_t i = 0; all && i < to.size(); ++i) to[i] = reading.count((*all)[i], 1).value_or(1);
   constexpr double most = std::numeric_limits<int>::max() / 4.0;  // nodes of a quadrilateral are numbered by an int
   if (product(to) > most) given->must_be("fewer cells than 5e8 in all");
+}
+inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::array<int, 2>& to,
+                     const Counts&) {
+  read_cells(object, reading, key, to);
+}
+inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::vector<int>& to,
+                     const Counts&) {
+  to.resize(reading.dimension());
+  read_cells(object, reading, key, to);
 }
 inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::vector<Number>& to,
                      const Direction2D& how) {
@@ -136,6 +159,10 @@ nlohmann::ordered_json kind_of(const Number& standard, const EndOfTurn<S>&) {
 }
 inline nlohmann::ordered_json kind_of(int, const Count&) { return {{"$ref", "#/$defs/count"}}; }
 inline nlohmann::ordered_json kind_of(const std::array<int, 2>&, const Counts&) { return {{"$ref", "#/$defs/cells"}}; }
+inline nlohmann::ordered_json kind_of(const PlaneMesh&, const MeshInPlane&) { return {{"$ref", "#/$defs/mesh"}}; }
+inline nlohmann::ordered_json kind_of(const std::vector<int>&, const Counts&) {
+  return {{"$ref", "#/$defs/cells_of_axes"}};
+}
 inline nlohmann::ordered_json kind_of(const std::array<std::array<Number, 2>, 4>&, const Corners2D&) {
   return {{"title", "four [x, y]"},
           {"type", "array"},

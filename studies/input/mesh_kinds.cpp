@@ -19,9 +19,14 @@ using Schema = nlohmann::ordered_json;
 // What numbers of one mesh must be beside each other.
 
 void compare(const JsonNode& node, const BoxMesh& box) {
-  for (int axis = 0; axis < 2; ++axis)
+  for (std::size_t axis = 0; axis < box.max.size(); ++axis)
     if (box.max[axis].value <= box.min[axis].value)
       node.find("max")->elements()[axis].must_be("greater than min, which is " + shown(box.min[axis].value));
+}
+
+void compare(const JsonNode& node, const ExtrudedMesh& extruded) {
+  if (extruded.to.value <= extruded.from.value)
+    node.find("to")->must_be("greater than from, which is " + shown(extruded.from.value));
 }
 
 void compare(const JsonNode& node, const RingMesh& ring) {
@@ -32,7 +37,7 @@ void compare(const JsonNode& node, const RingMesh& ring) {
 /// A generator without its type.
 struct MeshKind {
   const char* key;
-  Filling filling;
+  bool is_in_space;  ///< there are meshes of the kind in the space solid
   Schema (*schema)();
   std::optional<MeshDescription> (*read)(const JsonNode& node, SceneReading& reading);
 };
@@ -48,13 +53,29 @@ std::optional<MeshDescription> read_generator(const JsonNode& node, SceneReading
 template <std::size_t... i>
 constexpr std::array<MeshKind, sizeof...(i)> mesh_kinds_of(std::index_sequence<i...>) {
   const auto kind = []<class M>(std::type_identity<M>) {
-    return MeshKind{M::key, M::filling, schema_of_object<M>, read_generator<M>};
+    constexpr bool is_in_space = M::filling != Filling::continuum || requires { M::fills_space; };
+    return MeshKind{M::key, is_in_space, schema_of_object<M>, read_generator<M>};
   };
   return {kind(std::type_identity<std::variant_alternative_t<i, MeshDescription>>())...};
 }
 
 /// All, in the order of MeshDescription, the last of which is the mesh of a file.
 constexpr auto mesh_kinds = mesh_kinds_of(std::make_index_sequence<std::variant_size_v<MeshDescription> - 1>());
+
+template <std::size_t... i>
+std::optional<PlaneMesh> read_plane_mesh(const std::string& name, const JsonNode& node, SceneReading& reading,
+                                         std::index_sequence<i...>) {
+  std::optional<PlaneMesh> read;
+  const auto take = [&]<class M>(std::type_identity<M>) {
+    if (name != M::key) return;
+    auto mesh = read_described<M>(node, reading);
+    if (!mesh) return;
+    if constexpr (requires { compare(node, *mesh); }) compare(node, *mesh);
+    read = *std::move(mesh);
+  };
+  (take(std::type_identity<std::variant_alternative_t<i, PlaneMesh>>()), ...);
+  return read;
+}
 
 /// The mesh file's content, read at most once; none where it cannot be read.
 const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneReading& reading) {
@@ -103,6 +124,26 @@ std::optional<MeshDescription> read_gmsh(const JsonNode& mesh, const JsonNode& n
 
 }  // namespace
 
+namespace detail {
+
+void read_key(const JsonNode& object, SceneReading& reading, const char* key, PlaneMesh& to, const MeshInPlane&) {
+  const auto given = object.find(key);
+  if (!given) return;
+  constexpr auto kinds = std::make_index_sequence<std::variant_size_v<PlaneMesh>>();
+  std::vector<std::string> keys;
+  const auto list = [&]<std::size_t... i>(std::index_sequence<i...>) {
+    (keys.emplace_back(std::variant_alternative_t<i, PlaneMesh>::key), ...);
+  };
+  list(kinds);
+  const auto named = given->kind(keys);
+  if (!named) return;
+  reading.in_plane_mesh = true;
+  if (auto mesh = read_plane_mesh(named->first, named->second, reading, kinds)) to = *std::move(mesh);
+  reading.in_plane_mesh = false;
+}
+
+}  // namespace detail
+
 std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& reading) {
   std::vector<std::string> keys;
   keys.reserve(mesh_kinds.size() + 1);
@@ -117,10 +158,10 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
   const auto generator = std::find_if(mesh_kinds.begin(), mesh_kinds.end(),
                                       [&name = name](const MeshKind& kind) { return name == kind.key; });
   const bool from_file = generator == mesh_kinds.end();
-  if (reading.dimension() == 3 && (from_file || generator->filling == Filling::continuum)) {
+  if (reading.dimension() == 3 && (from_file || !generator->is_in_space)) {
     std::vector<std::string> allowed;
     for (const auto& kind : mesh_kinds)
-      if (kind.filling != Filling::continuum) allowed.emplace_back(kind.key);
+      if (kind.is_in_space) allowed.emplace_back(kind.key);
     mesh.error_at_key(in_quotes(name) +
                       " in the space solid is not available in this version; allowed: " + listed(allowed));
     return std::nullopt;

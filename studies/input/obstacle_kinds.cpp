@@ -57,6 +57,19 @@ json as_drawn(const Circle& circle) {
       {"circle", {{"center", values_json(circle.center)}, {"radius", circle.radius.value}, {"inside", circle.inside}}}};
 }
 
+json as_drawn(const Sphere& sphere) {
+  return {
+      {"sphere", {{"center", values_json(sphere.center)}, {"radius", sphere.radius.value}, {"inside", sphere.inside}}}};
+}
+
+json as_drawn(const Cylinder& cylinder) {
+  return {{"cylinder",
+           {{"point", values_json(cylinder.point)},
+            {"axis", values_json(cylinder.axis)},
+            {"radius", cylinder.radius.value},
+            {"inside", cylinder.inside}}}};
+}
+
 json as_drawn(const Polyline& polyline) {
   json vertices = json::array();
   for (const auto& x : polyline.points) vertices.push_back(values_json(x));
@@ -101,6 +114,7 @@ ObstacleKind obstacle_kind() {
     kind = {S::key, surface_schema<S>, read_described_surface<S>};
   else
     kind = entry_of(std::type_identity<S>());
+  kind.is_in_plane = S::is_in_plane;
   kind.is_in_space = S::is_in_space;
   return kind;
 }

@@ -13,7 +13,7 @@ struct ObstacleKind {
   const char* key;                                                                   ///< of {"KEY": {...}}
   nlohmann::ordered_json (*schema)();                                                ///< JSON Schema of what it holds
   std::optional<RigidSurface> (*read)(const JsonNode& node, SceneReading& reading);  ///< none where it is at fault
-  bool is_in_space = false;                                                          ///< or in the plane alone
+  bool is_in_plane = false, is_in_space = false;                                     ///< where it is made for
 };
 
 /// {"KIND": {...}} of picture.json, where it stands at the start. The report draws planes, circles and polylines: any

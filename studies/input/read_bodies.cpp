@@ -91,7 +91,8 @@ void report_inverted(const JsonNode& node, const MeshDescription& description, c
   const int n = nodes_of(mesh.shape);
   for (int a = 0; a < n; ++a) {
     const auto x = points.col(mesh.connectivity[bad * n + a]);
-    fault += " (" + shown(x[0]) + ", " + shown(x[1]) + ")";
+    for (Eigen::Index i = 0; i < x.size(); ++i) fault += (i == 0 ? " (" : ", ") + shown(x[i]);
+    fault += ")";
   }
   report_element(node, description, mesh, fault, reading,
                  [&](const auto& even) { return !first_inverted_element(mesh, even); });
@@ -163,7 +164,10 @@ void read_body(const std::string& name, const JsonNode& node, SceneReading& read
   Body body;
   body.name = name;
   if (const auto element = node.find("element")) {
-    body.element = element->choice({"Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "bar", "point"}).value_or("");
+    body.element =
+        element
+            ->choice({"Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "H8", "H8_mean_dilatation", "T4", "bar", "point"})
+            .value_or("");
   }
   const auto mesh_node = node.find("mesh");
   const auto mesh = mesh_node ? read_mesh(*mesh_node, reading) : std::nullopt;

@@ -19,8 +19,6 @@ void read_space(const JsonNode& root, SceneReading& reading) {
 
 void read_strain(const JsonNode& node, SceneReading& reading) {
   reading.scene.finite_strain = node.choice({"small", "finite"}) == "finite";
-  if (reading.scene.finite_strain && reading.scene.space == Space::solid)
-    node.error(R"(is "finite", which needs a space "plane_strain", "plane_stress" or "axisymmetric" in this version)");
 }
 
 void read_linear_solver(const JsonNode& node, const Scene& scene, Input& input) {

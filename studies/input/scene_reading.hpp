@@ -40,7 +40,8 @@ struct SceneReading {
   std::map<std::string, Mesh> meshes;                ///< by body; none where the body's mesh is at fault
   std::map<std::string, MeshDescription> described;  ///< of each of these what it is made from
 
-  int dimension() const { return scene.dimension(); }
+  bool in_plane_mesh = false;  ///< a mesh of the plane is being read, which is drawn out into space
+  int dimension() const { return in_plane_mesh ? 2 : scene.dimension(); }
   /// Axes of the space: x, y (, z).
   std::vector<std::string> axes() const;
 

@@ -30,6 +30,10 @@ int points_of(VtuCell cell) {
       return 6;
     case VtuCell::quad8:
       return 8;
+    case VtuCell::tetra:
+      return 4;
+    case VtuCell::hexahedron:
+      return 8;
   }
   throw std::invalid_argument("vtu: unknown kind of cell");
 }
@@ -48,6 +52,10 @@ VtuCell cell_of(ElementShape shape) {
       return VtuCell::triangle6;
     case ElementShape::quad8:
       return VtuCell::quad8;
+    case ElementShape::tet4:
+      return VtuCell::tetra;
+    case ElementShape::hex8:
+      return VtuCell::hexahedron;
   }
   throw std::invalid_argument("vtu: an element shape without a cell");
 }

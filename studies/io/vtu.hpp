@@ -11,7 +11,16 @@
 namespace stickslip {
 
 /// Kinds of cells, by VTK's own numbers.
-enum class VtuCell : unsigned char { vertex = 1, line = 3, triangle = 5, quad = 9, triangle6 = 22, quad8 = 23 };
+enum class VtuCell : unsigned char {
+  vertex = 1,
+  line = 3,
+  triangle = 5,
+  quad = 9,
+  tetra = 10,
+  hexahedron = 12,
+  triangle6 = 22,
+  quad8 = 23
+};
 
 /// One field: a column of `values` for each point or cell. 1 row is a scalar, 2 or 3 a vector (2 is padded with a zero
 /// to VTK's 3), 6 a symmetric tensor in VTK's order xx yy zz xy yz xz, by which its components are named.

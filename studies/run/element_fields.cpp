@@ -17,10 +17,8 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
     const auto& law = problem.slots.laws[b];
     Vector<double> volumes = Vector<double>::Zero(model.bodies[b].mesh.element_count());
     for_each_strain(problem, state, b, [&](int e, const auto& H, double volume, const double* memory) {
-      const auto [xx, yy, zz, xy] = stress_of(law, H, memory);
-      Eigen::Matrix<double, 6, 1> components;
-      components << xx, yy, zz, xy, 0, 0;
-      stress.col(first + e) += volume * components;
+      const auto components = stress_of(law, H, memory);
+      stress.col(first + e) += volume * Eigen::Map<const Eigen::Matrix<double, 6, 1>>(components.data());
       volumes[e] += volume;
     });
     for (Eigen::Index e = 0; e < volumes.size(); ++e)

@@ -34,6 +34,10 @@ const char* shape_name(ElementShape shape) {
       return "T6 triangle";
     case ElementShape::quad8:
       return "Q8 quadrilateral";
+    case ElementShape::tet4:
+      return "T4 tetrahedron";
+    case ElementShape::hex8:
+      return "H8 hexahedron";
   }
   return "";
 }

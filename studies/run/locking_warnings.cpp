@@ -153,9 +153,9 @@ double spurious_pressure(const Problem& problem, const State<double>& state, std
   const double bulk = moduli->lame + 2 * moduli->shear / 3;
   double spurious = 0, all = 0;
   for_each_strain(problem, state, b, [&](int e, const auto& H, double v, const double* memory) {
-    const auto [xx, yy, zz, xy] = stress_of(law, H, memory);
+    const auto [xx, yy, zz, xy, yz, xz] = stress_of(law, H, memory);
     spurious += v * std::pow(bulk * (H.full().trace() - around[e]), 2);
-    all += v * (xx * xx + yy * yy + zz * zz + 2 * xy * xy);
+    all += v * (xx * xx + yy * yy + zz * zz + 2 * (xy * xy + yz * yz + xz * xz));
   });
   return all > 0 ? std::sqrt(spurious / all) : 0;
 }
@@ -172,7 +172,7 @@ double parasitic_shear(const Problem& problem, const State<double>& state, std::
   if (edges.empty()) return 0;
   using Strain = Mat<double, 2>;  // in the plane; Green's at finite strain
   const auto strain_of = [&](const auto& H) {
-    const Strain h = H.matrix();
+    const Strain h = H.full().template topLeftCorner<2, 2>();
     Strain strain = (h + h.transpose()) / 2;
     if (problem.model.scene.finite_strain) strain += h.transpose() * h / 2;
     return strain;

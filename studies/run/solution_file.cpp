@@ -65,6 +65,10 @@ std::string_view element_name(const BodyMesh& body) {
       return "T6";
     case ElementShape::quad8:
       return "Q8";
+    case ElementShape::tet4:
+      return "T4";
+    case ElementShape::hex8:
+      return has_mean_dilatation(body.kinematics) ? "H8_mean_dilatation" : "H8";
   }
   return "";
 }

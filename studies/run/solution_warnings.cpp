@@ -116,26 +116,38 @@ void add_mechanisms(const CaseResult& result, std::vector<Warning>& warnings) {
   }
 }
 
-/// Least over largest of the change of volume J within an element whose plane nodes go from X to x; negative where it
-/// turns over. Of straight sides both are at corners; of curved ones they are sought on a grid of 5 x 5.
-double evenness(ElementShape shape, const std::vector<Vec<double, 2>>& X, const std::vector<Vec<double, 2>>& x) {
+/// Natural places at which the change of volume of an element is looked at: of straight sides its corners; of curved ones
+/// a grid of 5 x 5.
+template <class Shape>
+std::vector<typename Shape::Point> places_of_volumes() {
+  std::vector<typename Shape::Point> all;
+  constexpr int n = Shape::nodes > Shape::corners ? 4 : 1;
+  constexpr bool simplex = Shape::is_simplex;
+  const auto natural = [](int i) { return simplex ? static_cast<double>(i) / n : 2.0 * i / n - 1; };
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= (simplex ? n - i : n); ++j)
+      if constexpr (Shape::dimension == 3)
+        for (int k = 0; k <= (simplex ? n - i - j : n); ++k)
+          all.push_back(Shape::at(natural(i), natural(j), natural(k), 0));
+      else
+        all.push_back(Shape::at(natural(i), natural(j), 0));
+  return all;
+}
+
+/// Least over largest of the change of volume J within an element whose nodes go from X to x; negative where it turns
+/// over.
+double evenness(ElementShape shape, const Points<double>& X, const Points<double>& x) {
   double least = std::numeric_limits<double>::infinity(), largest = 0;
   with_shape(shape, [&]<class Shape>(Shape) {
-    constexpr int n = Shape::nodes > Shape::corners ? 4 : 1;
-    constexpr bool triangle = Shape::corners == 3;
-    for (int i = 0; i <= n; ++i)
-      for (int j = 0; j <= (triangle ? n - i : n); ++j) {
-        const double r = static_cast<double>(i) / n, s = static_cast<double>(j) / n;
-        const auto at = triangle ? Shape::at(r, s, 0) : Shape::at(2 * r - 1, 2 * s - 1, 0);
-        Mat<double, 2> before = Mat<double, 2>::Zero(), now = before;
-        for (int a = 0; a < Shape::nodes; ++a) {
-          before += X[a] * at.gradient.col(a).transpose();
-          now += x[a] * at.gradient.col(a).transpose();
-        }
-        const double J = now.determinant() / before.determinant();
-        least = std::min(least, J);
-        largest = std::max(largest, J);
-      }
+    static const auto places = places_of_volumes<Shape>();
+    const Nodal<double, Shape> first = X, last = x;
+    for (const auto& at : places) {
+      const Mat<double, Shape::dimension> before = first * at.gradient.transpose(),
+                                          now = last * at.gradient.transpose();
+      const double J = now.determinant() / before.determinant();
+      least = std::min(least, J);
+      largest = std::max(largest, J);
+    }
   });
   return least / largest;
 }
@@ -144,23 +156,20 @@ double evenness(ElementShape shape, const std::vector<Vec<double, 2>>& X, const 
 void add_folded_elements(const CaseResult& result, std::vector<Warning>& warnings) {
   constexpr double nearly = 0.02;  // volumes that change fifty times as much within one element are not its to resolve
   const auto& [model, slots, unused] = *result.problem;
-  if (!model.scene.finite_strain || model.dimension != 2) return;
+  if (!model.scene.finite_strain) return;
   for (const auto& body : model.bodies) {
     if (!is_continuum(body.mesh.shape)) continue;
     long most = 0;
     double first = 0;
     std::vector<int> nodes;
-    std::vector<Vec<double, 2>> X, x;
+    Points<double> X, x;
     for (const auto& step : solved_steps(result)) {
       const auto& u = step.increment->state.displacement;
       long folded = 0;
       for (int e = 0; is_whole(step.increment->state) && e < body.mesh.element_count(); ++e) {
         detail::set_element_nodes(body, e, nodes);
-        X.clear(), x.clear();
-        for (const int node : nodes) {
-          X.push_back(slots.points.col(node).head<2>());
-          x.push_back(X.back() + u.segment<2>(2 * node));
-        }
+        X = slots.points(Eigen::all, nodes);
+        x = X + u.reshaped(model.dimension, model.node_count)(Eigen::all, nodes);
         folded += evenness(body.mesh.shape, X, x) < nearly;
       }
       if (folded > 0 && most == 0) first = step.increment->time;

@@ -18,7 +18,7 @@ template <class F>
 void for_each_strain(const Problem& problem, const State<double>& state, std::size_t b, F&& f) {
   const auto& body = problem.model.bodies[b];
   if (!is_continuum(body.mesh.shape)) return;
-  const int count = memory_of(problem.model.scene.bodies[b].material, false);
+  const int count = memory_of(problem.model.scene.bodies[b].material, layout_of(body.kinematics));
   const double* const first = count > 0 ? state.history.bodies.data() + body.first_memory : nullptr;
   detail::with_element(body, [&]<class Shape, Kinematics kinematics>() {
     for (int e = 0; e < body.mesh.element_count(); ++e) {
@@ -35,11 +35,12 @@ void for_each_strain(const Problem& problem, const State<double>& state, std::si
   });
 }
 
-/// Stress (xx, yy, zz, xy) at a displacement gradient and the memory of its point; Cauchy stress at finite strain.
+/// Stress (xx, yy, zz, xy, yz, xz) at a displacement gradient and the memory of its point; Cauchy stress at finite
+/// strain.
 template <TensorLayout layout>
-std::array<double, 4> stress_of(const Law<double>& law, const Tensor<double, layout>& H, const double* memory) {
+std::array<double, 6> stress_of(const Law<double>& law, const Tensor<double, layout>& H, const double* memory) {
   return std::visit(
-      [&]<class L>(const L& of) -> std::array<double, 4> {
+      [&]<class L>(const L& of) -> std::array<double, 6> {
         if constexpr (ContinuumLaw<L>) {
           constexpr int rows = Tensor<double, layout>::rows;
           Mat<double, rows> s;
@@ -51,16 +52,19 @@ std::array<double, 4> stress_of(const Law<double>& law, const Tensor<double, lay
               stretch = of.stretch_across(H, remembered...);
             }
           };
-          if constexpr (Remembers<L>)
-            take(Vec<double, L::memory>(Eigen::Map<const Vec<double, L::memory>>(memory)));
-          else
+          if constexpr (Remembers<L>) {
+            constexpr int count = L::memory_in(layout);
+            take(Vec<double, count>(Eigen::Map<const Vec<double, count>>(memory)));
+          } else {
             take();
+          }
           if (of.is_finite) {
             const Mat<double, rows> F = Mat<double, rows>::Identity() + H.full();
             s = s * F.transpose() / (F.determinant() * stretch);
           }
+          if constexpr (Tensor<double, layout>::in_space) return {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
           if constexpr (rows == 3) across = s(2, 2);
-          return {s(0, 0), s(1, 1), across, s(0, 1)};
+          return {s(0, 0), s(1, 1), across, s(0, 1), 0, 0};
         }
         return {};
       },

@@ -73,12 +73,11 @@ Solution quarter_ring(Space space, double nu, const std::string& element, int n)
   out.slots = make_slots<double>(out.model, s.as<double>());
   Vector<double> forces = Vector<double>::Zero(out.model.dof_count());
   for (const auto& edge : out.model.side("ring.inner").edges)
-    for_each_edge_point(out.slots.points, edge, out.slots.depths[0], [&](const auto& values, const auto& tau, double) {
-      for (std::size_t a = 0; a < edge.size(); ++a) {  // the inward normal of the solid lies on the left of the edge
-        forces[2 * edge[a]] -= 10 * values[a] * tau[1];
-        forces[2 * edge[a] + 1] += 10 * values[a] * tau[0];
-      }
-    });
+    for_each_side_point(out.slots.points, edge, out.slots.depths[0],
+                        [&](const auto& values, const auto& outward, double) {
+                          for (std::size_t a = 0; a < edge.size(); ++a)
+                            for (int i = 0; i < 2; ++i) forces[2 * edge[a] + i] -= 10 * values[a] * outward[i];
+                        });
   out.slots.loads[0] = NodalLoad<double>(forces);
   Workspace<double> workspace;
   const auto trajectory = solve(out.model, out.slots, MonolithicAL{}, {}, workspace);

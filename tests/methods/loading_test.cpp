@@ -31,7 +31,7 @@ Scene of_box(double width, double height, std::array<int, 2> cells, double nu, c
   BoxMesh box;
   box.min = {0.0, 0.0};
   box.max = {width, height};
-  box.cells = cells;
+  box.cells = {cells[0], cells[1]};
   s.bodies = {{"block", box, LinearElastic{1000.0, nu}, element, 1.0}};
   return s;
 }
@@ -163,7 +163,7 @@ TEST(Loads, BodyForceOfRevolutionIsConsistentOnTrianglesToo) {
 TEST(Loads, ActOnNothingOnTheAxisOfRevolution) {
   Points<Dual<1>> ends = Points<Dual<1>>::Constant(2, 2, Dual<1>(0));
   ends(1, 1) = Dual<1>::seed(1, 0);
-  const auto shares = edge_shares(ends, {0, 1}, Depth<Dual<1>>{true});
+  const auto shares = side_shares(ends, {0, 1}, Depth<Dual<1>>{true});
   EXPECT_EQ(shares[0].v, 0);
   EXPECT_EQ(shares[0].d[0], 0) << "its length grows, its area does not";
   Scene s;

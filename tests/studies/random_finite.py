@@ -244,7 +244,38 @@ def tube(draw):
             "press_on": None}
 
 
-CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, slide, ironing, stack, rings, disks, tube)}
+def solid(draw):
+    """A block or a tube of space, pressed onto a plane, a ball or a drum, dragged along two directions and twisted."""
+    width, depth, height = draw.uniform(0.8, 2), draw.uniform(0.8, 2), draw.uniform(0.5, 1.2)
+    elements = ("H8", "H8_mean_dilatation", "T4")
+    if draw.choice([True, False]):
+        body = draw.body({"box": {"min": [-width / 2, -depth / 2, 0], "max": [width / 2, depth / 2, height],
+                                  "cells": [draw.whole(2, 5), draw.whole(2, 5), draw.whole(2, 4)]}}, elements=elements)
+        sole, held = "body.bottom", "body.top"
+    else:
+        ring = {"ring": {"center": [0, 0], "inner": 0.25 * width, "outer": width / 2,
+                         "cells": [draw.whole(1, 3), draw.whole(8, 16)]}}
+        body = draw.body({"extruded": {"mesh": ring, "from": 0, "to": height, "cells": draw.whole(2, 4)}},
+                         elements=elements)
+        sole, held = "body.front", "body.back"
+    if "j2_plastic" in body["material"]:
+        body["element"] = "H8_mean_dilatation"
+    kind = draw.choice(["plane", "plane", "sphere", "cylinder"])
+    radius = draw.uniform(1, 5)
+    tool = {"plane": {"plane": {"point": [0, 0, 0], "normal": [draw.uniform(-0.05, 0.05), draw.uniform(-0.05, 0.05), 1]}},
+            "sphere": {"sphere": {"center": [0, 0, -radius], "radius": radius}},
+            "cylinder": {"cylinder": {"point": [0, 0, -radius], "axis": [draw.uniform(-1, 1), 1, 0], "radius": radius}}}
+    contact = dict(slave=sole, master="tool", **(draw.friction() if kind == "plane" else {}))
+    press = draw.uniform(0.02, 0.1) * height
+    support = {"on": held, "move": {"x": draw.there_and_back(draw.uniform(-0.5, 0.5)),
+                                    "y": draw.there_and_back(draw.uniform(-0.5, 0.5)), "z": [[0, 0], [1, -press]]},
+               "rotate": {"center": [0, 0, height], "axis": [draw.uniform(-0.1, 0.1), draw.uniform(-0.1, 0.1), 1],
+                          "angle": draw.there_and_back(draw.uniform(-10, 10))}}
+    return {"space": "solid", "bodies": {"body": body}, "obstacles": {"tool": tool[kind]}, "contacts": {"c": contact},
+            "supports": [support], "press_on": held}
+
+
+CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, slide, ironing, stack, rings, disks, tube, solid)}
 
 
 def scene_of(kind, number, surface):

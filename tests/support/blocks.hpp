@@ -20,7 +20,7 @@ inline Body box_body(const std::string& name, std::array<double, 2> min, std::ar
   BoxMesh box;
   box.min = {min[0], min[1]};
   box.max = {max[0], max[1]};
-  box.cells = cells;
+  box.cells = {cells[0], cells[1]};
   return {name, box, LinearElastic{E, nu}, "", 1.0};
 }
 

@@ -28,7 +28,18 @@ struct Setting {
 
 /// An element away from the axis with no two edges alike; the middles of its sides lie off their chords.
 template <class Shape>
-Mat<double, 2, Shape::nodes> distorted() {
+Nodal<double, Shape> distorted() requires(Shape::dimension == 3) {
+  Nodal<double, Shape> X;
+  if constexpr (Shape::is_simplex)
+    X << 2.1, 3.3, 2.4, 2.2, -0.2, 0.3, 1.1, 0.2, 0.1, -0.1, 0.2, 1.3;
+  else
+    X << 2.1, 3.3, 3.0, 1.8, 2.0, 3.1, 3.2, 2.1,   //
+        -0.2, 0.1, 1.4, 0.9, -0.1, 0.2, 1.1, 1.0,  //
+        0.1, -0.1, 0.2, 0.0, 1.2, 1.0, 1.3, 0.9;
+  return X;
+}
+template <class Shape>
+Mat<double, 2, Shape::nodes> distorted() requires(Shape::dimension == 2) {
   Mat<double, 2, Shape::corners> corners;
   if constexpr (Shape::corners == 3)
     corners << 2.1, 3.3, 2.4, -0.2, 0.3, 1.1;
@@ -45,13 +56,14 @@ Mat<double, 2, Shape::nodes> distorted() {
 
 template <class T>
 LinearElasticLaw<T> law(Kinematics kinematics) {
+  if (is_in_space(kinematics)) return {T(E), T(nu), Space::solid};
   return {T(E), T(nu), is_of_revolution(kinematics) ? Space::axisymmetric : Space::plane_strain};
 }
 
 /// Displacements that are no special case.
 template <class Shape>
-Mat<double, 2, Shape::nodes> arbitrary() {
-  Mat<double, 2, Shape::nodes> u;
+Nodal<double, Shape> arbitrary() {
+  Nodal<double, Shape> u;
   for (int k = 0; k < u.size(); ++k) u.data()[k] = std::sin(1.7 * k + 0.3);
   return u;
 }
@@ -61,53 +73,64 @@ class Elements : public testing::Test {
  protected:
   using Shape = typename S::Shape;
   static constexpr Kinematics kinematics = S::kinematics;
-  static constexpr int n = Shape::nodes;
+  static constexpr int n = Shape::nodes, dimension = Shape::dimension, dofs = dofs_of<Shape>;
   static constexpr bool revolved = is_of_revolution(kinematics);
-  using Local = Mat<double, 2, n>;
+  template <class T>
+  using At = Nodal<T, Shape>;
+  using Local = At<double>;
   const Local X = distorted<Shape>();
 
   template <class T>
-  static Mat<T, 2, n> forces(const Mat<T, 2, n>& at, const Mat<T, 2, n>& u, const T& depth = T(1)) {
+  static At<T> forces(const At<T>& at, const At<T>& u, const T& depth = T(1)) {
     return element_forces<T, Shape, kinematics>(law<T>(kinematics), at, u, depth);
   }
-  static Mat<double, 2 * n> tangent(const Local& at) {
+  static Mat<double, dofs> tangent(const Local& at) {
     return element_tangent<double, Shape, kinematics>(law<double>(kinematics), at, Local::Zero());
   }
 };
-using Settings = testing::Types<
-    Setting<Tri3, Kinematics::plane>, Setting<Quad4, Kinematics::plane>, Setting<Tri6, Kinematics::plane>,
-    Setting<Quad8, Kinematics::plane>, Setting<Tri3, Kinematics::revolution>, Setting<Quad4, Kinematics::revolution>,
-    Setting<Tri6, Kinematics::revolution>, Setting<Quad8, Kinematics::revolution>,
-    Setting<Quad4, Kinematics::plane_mean_dilatation>, Setting<Quad4, Kinematics::revolution_mean_dilatation>>;
+using Settings =
+    testing::Types<Setting<Tri3, Kinematics::plane>, Setting<Quad4, Kinematics::plane>,
+                   Setting<Tri6, Kinematics::plane>, Setting<Quad8, Kinematics::plane>,
+                   Setting<Tri3, Kinematics::revolution>, Setting<Quad4, Kinematics::revolution>,
+                   Setting<Tri6, Kinematics::revolution>, Setting<Quad8, Kinematics::revolution>,
+                   Setting<Quad4, Kinematics::plane_mean_dilatation>,
+                   Setting<Quad4, Kinematics::revolution_mean_dilatation>, Setting<Tet4, Kinematics::space>,
+                   Setting<Hex8, Kinematics::space>, Setting<Hex8, Kinematics::space_mean_dilatation>>;
 TYPED_TEST_SUITE(Elements, Settings);
 
 TYPED_TEST(Elements, HaveTheTangentThatIsTheDualOfTheWholeElement) {
-  constexpr int n = TestFixture::n;
-  using D = Dual<2 * n>;
+  constexpr int dofs = TestFixture::dofs;
+  using D = Dual<dofs>;
   const auto u = arbitrary<typename TestFixture::Shape>();
-  Mat<D, 2, n> seeded, at = this->X.unaryExpr([](double x) { return D(x); });
-  for (int k = 0; k < 2 * n; ++k) seeded.data()[k] = D::seed(u.data()[k], k);
+  typename TestFixture::template At<D> seeded, at = this->X.unaryExpr([](double x) { return D(x); });
+  for (int k = 0; k < dofs; ++k) seeded.data()[k] = D::seed(u.data()[k], k);
   const auto forces = TestFixture::template forces<D>(at, seeded);
   const auto K = this->tangent(this->X);
   const double rounding = 50 * epsilon * largest_entry(K);  // sums of up to some hundred products
-  for (int k = 0; k < 2 * n; ++k)
-    for (int l = 0; l < 2 * n; ++l) EXPECT_NEAR(K(k, l), forces.data()[k].d[l], rounding);
+  for (int k = 0; k < dofs; ++k)
+    for (int l = 0; l < dofs; ++l) EXPECT_NEAR(K(k, l), forces.data()[k].d[l], rounding);
   // linear: the forces are the tangent times the displacements
-  for (int k = 0; k < 2 * n; ++k)
-    EXPECT_NEAR(forces.data()[k].v, K.row(k).dot(u.reshaped()), rounding * std::sqrt(2.0 * n));
+  for (int k = 0; k < dofs; ++k)
+    EXPECT_NEAR(forces.data()[k].v, K.row(k).dot(u.reshaped()), rounding * std::sqrt(double(dofs)));
   EXPECT_LE(largest_entry(K - K.transpose()), rounding);
 }
 
 TYPED_TEST(Elements, HaveTheirRigidMotionsAndNoOtherMotionWithoutEnergy) {
-  constexpr int n = TestFixture::n;
+  using Local = typename TestFixture::Local;
+  constexpr int D = TestFixture::dimension;
   const auto K = this->tangent(this->X);
   const double largest = largest_entry(K);
-  std::vector<Mat<double, 2, n>> rigid(TestFixture::revolved ? 1 : 3, Mat<double, 2, n>::Zero());
-  rigid[0].row(1).setConstant(1);
-  if (!TestFixture::revolved) {
-    rigid[1].row(0).setConstant(1);
-    rigid[2] << -this->X.row(1), this->X.row(0);
+  std::vector<Local> rigid;
+  for (int i = TestFixture::revolved ? 1 : 0; i < D; ++i) {
+    rigid.emplace_back(Local::Zero());
+    rigid.back().row(i).setConstant(1);
   }
+  for (int i = 0; i < D && !TestFixture::revolved; ++i)
+    for (int j = i + 1; j < D; ++j) {
+      rigid.emplace_back(Local::Zero());
+      rigid.back().row(i) = -this->X.row(j);
+      rigid.back().row(j) = this->X.row(i);
+    }
   for (const auto& mode : rigid)
     EXPECT_LE(largest_entry(K * mode.reshaped()), 100 * epsilon * largest);  // sums that cancel, of lengths 3
   const auto values = Eigen::SelfAdjointEigenSolver<Matrix<double>>(K).eigenvalues();
@@ -140,81 +163,95 @@ TEST(Quadrature, WithFewerPointsWouldLeaveMotionsWithoutEnergy) {
 }
 
 TYPED_TEST(Elements, HaveTheDerivativesOfTheComplexStepWithRespectToShapeAndThickness) {
-  constexpr int n = TestFixture::n;
+  constexpr int dofs = TestFixture::dofs;
+  constexpr bool reads_thickness = TestFixture::dimension == 2 && !TestFixture::revolved;
   using Complex = std::complex<double>;
   using D = Dual<1>;
   const auto u = arbitrary<typename TestFixture::Shape>();
-  for (int k = 0; k <= 2 * n; ++k) {
-    Mat<D, 2, n> X = this->X.unaryExpr([](double x) { return D(x); }), v = u.unaryExpr([](double x) { return D(x); });
-    Mat<Complex, 2, n> Z = this->X.template cast<Complex>(), w = u.template cast<Complex>();
+  for (int k = 0; k <= dofs; ++k) {
+    typename TestFixture::template At<D> X = this->X.unaryExpr([](double x) { return D(x); }),
+                                         v = u.unaryExpr([](double x) { return D(x); });
+    typename TestFixture::template At<Complex> Z = this->X.template cast<Complex>(), w = u.template cast<Complex>();
     D thickness(0.7);
     Complex depth(0.7);
-    (k < 2 * n ? X.data()[k] : thickness).d[0] = 1;
-    (k < 2 * n ? Z.data()[k] : depth) += Complex(0, 1e-30);  // its square is lost beside one
+    (k < dofs ? X.data()[k] : thickness).d[0] = 1;
+    (k < dofs ? Z.data()[k] : depth) += Complex(0, 1e-30);  // its square is lost beside one
     const auto dual = TestFixture::template forces<D>(X, v, thickness);
     const auto oracle = TestFixture::template forces<Complex>(Z, w, depth);
     double largest = 0;
-    for (int i = 0; i < 2 * n; ++i) largest = larger(largest, std::abs(oracle.data()[i].imag() / 1e-30));
-    for (int i = 0; i < 2 * n; ++i)  // some hundred operations
+    for (int i = 0; i < dofs; ++i) largest = larger(largest, std::abs(oracle.data()[i].imag() / 1e-30));
+    for (int i = 0; i < dofs; ++i)  // some hundred operations
       EXPECT_NEAR(dual.data()[i].d[0], oracle.data()[i].imag() / 1e-30, 1000 * epsilon * (largest + E));
-    EXPECT_EQ(largest > 0, k < 2 * n || !TestFixture::revolved) << k;  // of revolution the thickness is not read
+    EXPECT_EQ(largest > 0, k < dofs || reads_thickness) << k;
   }
 }
 
 template <class Shape, Kinematics kinematics>
 std::string element_name() {
+  if (Shape::dimension == 3) {
+    if (has_mean_dilatation(kinematics)) return "H8_mean_dilatation";
+    return Shape::is_simplex ? "T4" : "H8";
+  }
   if (has_mean_dilatation(kinematics)) return "Q4_mean_dilatation";
   return Shape::nodes == 3 ? "T3" : Shape::nodes == 4 ? "Q4" : Shape::nodes == 6 ? "T6" : "Q8";
 }
 
-/// A box of 5 x 4 cells, [1, 6] x [0, 4], whose inner corners are moved by up to a quarter of a cell.
+/// A box of 5 x 4 cells, [1, 6] x [0, 4], in space of 5 x 4 x 3, whose inner corners are moved by up to a quarter of a
+/// cell, in space by a sixth.
 struct Patch {
   Mesh mesh;
   Points<double> points;
   bool inner(int node) const {
     const auto x = points.col(node);
-    return x[0] > 1 && x[0] < 6 && x[1] > 0 && x[1] < 4;
+    return x[0] > 1 && x[0] < 6 && x[1] > 0 && x[1] < 4 && (x.size() == 2 || (x[2] > 0 && x[2] < 3));
   }
 };
-Patch irregular_patch(const std::string& element) {
+Patch irregular_patch(const std::string& element, int dimension) {
   BoxMesh box;
-  box.min = {1.0, 0.0};
-  box.max = {6.0, 4.0};
-  box.cells = {5, 4};
-  Patch patch{make_mesh(box, element, 2), make_points<double>(box, Numbers<double>{}, 2)};
+  box.min = {1.0, 0.0, 0.0};
+  box.max = {6.0, 4.0, 3.0};
+  box.cells = {5, 4, 3};
+  for (auto* corner : {&box.min, &box.max}) corner->resize(dimension);
+  box.cells.resize(dimension);
+  Patch patch{make_mesh(box, element, dimension), make_points<double>(box, Numbers<double>{}, dimension)};
   const auto regular = patch;
   for (int node = 0; node < patch.points.cols(); ++node)
-    if (regular.inner(node))
-      patch.points.col(node) += 0.25 * Vec<double, 2>(std::sin(3.1 * node), std::cos(2.3 * node));
+    for (int i = 0; i < dimension && regular.inner(node); ++i)
+      patch.points(i, node) +=
+          (dimension == 2 ? 0.25 : 1.0 / 6) * (i == 1 ? std::cos(2.3 * node) : std::sin(3.1 * node + i));
   if (!patch.mesh.middles.empty()) patch.points = with_middles(patch.mesh, patch.points);
   return patch;
 }
 
 TYPED_TEST(Elements, PassThePatchTestOnAnIrregularMesh) {
   using Shape = typename TestFixture::Shape;
-  constexpr int n = TestFixture::n;
-  const Patch patch = irregular_patch(element_name<Shape, TestFixture::kinematics>());
+  constexpr int n = TestFixture::n, D = TestFixture::dimension;
+  const Patch patch = irregular_patch(element_name<Shape, TestFixture::kinematics>(), Shape::dimension);
   ASSERT_FALSE(first_inverted_element(patch.mesh, patch.points));
   const int nodes = patch.mesh.node_count;
   // of revolution constant strain means u_r = a r, u_y = b y: a shear or a constant u_r would need body forces
-  Mat<double, 2> H;
-  H << 0.003, -0.007, 0.002, 0.011;
+  Mat<double, D> H;
+  H.template topLeftCorner<2, 2>() << 0.003, -0.007, 0.002, 0.011;
+  if constexpr (D == 3) {
+    H.row(2) << -0.004, 0.006, 0.005;
+    H.col(2).template head<2>() << 0.008, -0.001;
+  }
   if (TestFixture::revolved) H(0, 1) = H(1, 0) = 0;
   const Matrix<double> linear = H * patch.points;
-  Matrix<double> K = Matrix<double>::Zero(2 * nodes, 2 * nodes), forces = Matrix<double>::Zero(2, nodes);
+  Matrix<double> K = Matrix<double>::Zero(D * nodes, D * nodes), forces = Matrix<double>::Zero(D, nodes);
   for (int e = 0; e < patch.mesh.element_count(); ++e) {
     const int* list = patch.mesh.connectivity.data() + e * n;
-    Mat<double, 2, n> X, u;
+    typename TestFixture::Local X, u;
     for (int a = 0; a < n; ++a) X.col(a) = patch.points.col(list[a]), u.col(a) = linear.col(list[a]);
     const auto f = TestFixture::template forces<double>(X, u);
     const auto k = this->tangent(X);
     for (int a = 0; a < n; ++a) {
       forces.col(list[a]) += f.col(a);
-      for (int b = 0; b < n; ++b) K.block<2, 2>(2 * list[a], 2 * list[b]) += k.template block<2, 2>(2 * a, 2 * b);
+      for (int b = 0; b < n; ++b) K.block<D, D>(D * list[a], D * list[b]) += k.template block<D, D>(D * a, D * b);
     }
   }
   std::vector<int> inner, edge;
-  for (int dof = 0; dof < 2 * nodes; ++dof) (patch.inner(dof / 2) ? inner : edge).push_back(dof);
+  for (int dof = 0; dof < D * nodes; ++dof) (patch.inner(dof / D) ? inner : edge).push_back(dof);
   const double largest = largest_entry(forces);
   double unbalanced = 0;
   for (int node = 0; node < nodes; ++node)
@@ -228,16 +265,18 @@ TYPED_TEST(Elements, PassThePatchTestOnAnIrregularMesh) {
 
 TYPED_TEST(Elements, FillTheVolumeOfTheirBody) {
   using Shape = typename TestFixture::Shape;
-  const Patch patch = irregular_patch(element_name<Shape, TestFixture::kinematics>());
+  const Patch patch = irregular_patch(element_name<Shape, TestFixture::kinematics>(), Shape::dimension);
   double volume = 0;
   for (int e = 0; e < patch.mesh.element_count(); ++e) {
-    Mat<double, 2, TestFixture::n> X;
+    typename TestFixture::Local X;
     for (int a = 0; a < TestFixture::n; ++a)
       X.col(a) = patch.points.col(patch.mesh.connectivity[e * TestFixture::n + a]);
     for_each_gradient<double, Shape, TestFixture::kinematics>(X, 0.5,
                                                               [&](const auto& gradient) { volume += gradient.volume; });
   }
-  const double exact = TestFixture::revolved ? pi * (36 - 1) * 4 : 5 * 4 * 0.5;
+  const double exact = TestFixture::dimension == 3 ? 5 * 4 * 3
+                       : TestFixture::revolved     ? pi * (36 - 1) * 4
+                                                   : 5 * 4 * 0.5;
   EXPECT_NEAR(volume, exact, 200 * epsilon * exact);  // a sum of some hundred products
 }
 
@@ -259,19 +298,19 @@ TEST(MeanDilatation, IsTheSameAtAllPointsAndThatOfTheElementsVolume) {
   expect_mean(traces.operator()<Kinematics::revolution>(), traces.operator()<Kinematics::revolution_mean_dilatation>());
 }
 
-TEST(EdgeShares, AreConsistent) {
+TEST(SideShares, AreConsistent) {
   Points<double> X(2, 3);
   X << 1, 4, 2.5, 2, 6, 4;  // from (1, 2) to (4, 6), length 5, and its middle
   const Depth<double> slice{false, 0.5}, turn{true, 1};
   const double L = 5, rounding = 100 * epsilon;  // some ten operations on numbers up to 100
-  const auto linear = edge_shares(X, {0, 1}, slice), quadratic = edge_shares(X, {0, 1, 2}, slice);
+  const auto linear = side_shares(X, {0, 1}, slice), quadratic = side_shares(X, {0, 1, 2}, slice);
   EXPECT_NEAR(linear[0], 0.5 * L / 2, rounding);
   EXPECT_NEAR(linear[1], 0.5 * L / 2, rounding);
   EXPECT_NEAR(quadratic[0], 0.5 * L / 6, rounding);
   EXPECT_NEAR(quadratic[1], 0.5 * L / 6, rounding);
   EXPECT_NEAR(quadratic[2], 0.5 * L * 4 / 6, rounding);
   // int N_a 2 pi r ds, r from 1 to 4
-  const auto cone = edge_shares(X, {0, 1}, turn), fine = edge_shares(X, {0, 1, 2}, turn);
+  const auto cone = side_shares(X, {0, 1}, turn), fine = side_shares(X, {0, 1, 2}, turn);
   EXPECT_NEAR(cone[0], 2 * pi * L * (2 * 1 + 4) / 6, rounding);
   EXPECT_NEAR(cone[1], 2 * pi * L * (1 + 2 * 4) / 6, rounding);
   EXPECT_NEAR(fine[0], 2 * pi * L * 1 / 6, rounding);
@@ -279,11 +318,24 @@ TEST(EdgeShares, AreConsistent) {
   EXPECT_NEAR(fine[2], 2 * pi * L * 4 * 2.5 / 6, rounding);
 }
 
-TEST(EdgeShares, OfAQuadraticEdgeSumUpToTheArcItFollowsToFourthOrder) {
+TEST(SideShares, OfFacesAreConsistent) {
+  Points<double> X(3, 4);  // a parallelogram of area |(2, 0, 1) x (0, 3, 0)| = 3 sqrt 5
+  X << 0, 2, 2, 0, 0, 0, 3, 3, 0, 1, 1, 0;
+  const double area = 3 * std::sqrt(5.0), rounding = 100 * epsilon;  // some ten operations on numbers up to 10
+  const auto quadrilateral = side_shares(X, {0, 1, 2, 3}, Depth<double>{}),
+             triangle = side_shares(X, {0, 1, 2}, Depth<double>{});
+  for (int a = 0; a < 4; ++a) EXPECT_NEAR(quadrilateral[a], area / 4, rounding);
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(triangle[a], area / 6, rounding);
+  Vec<double, 3> outward = Vec<double, 3>::Zero();  // right-handed with the order of the nodes
+  for_each_side_point(X, {0, 1, 2, 3}, Depth<double>{}, [&](const auto&, const auto& out, double) { outward += out; });
+  EXPECT_NEAR((outward - Vec<double, 3>(-3, 0, 6)).norm(), 0, rounding);
+}
+
+TEST(SideShares, OfAQuadraticEdgeSumUpToTheArcItFollowsToFourthOrder) {
   auto error = [](double half) {
     Points<double> X(2, 3);
     X << std::sin(half), std::sin(-half), 0, std::cos(half), std::cos(half), 1;
-    const auto shares = edge_shares(X, {0, 1, 2}, Depth<double>{});
+    const auto shares = side_shares(X, {0, 1, 2}, Depth<double>{});
     return std::abs((shares[0] + shares[1] + shares[2]) / (2 * half) - 1);
   };
   EXPECT_LT(error(0.2), 1e-4);

@@ -1,0 +1,8 @@
+/// Hexahedra of eight nodes.
+#include "core/model/element_kernels_impl.hpp"
+
+namespace stickslip {
+
+STICKSLIP_ELEMENTS_OF(double, Hex8);
+
+}  // namespace stickslip

@@ -1,0 +1,143 @@
+/// Meshes of space: boxes and extruded meshes of hexahedra and of tetrahedra fill their volume, have no inverted element,
+/// fit together, and have sides that face outward.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <map>
+#include <set>
+
+#include "core/mesh/generators.hpp"
+#include "core/mesh/quality.hpp"
+#include "core/mesh/sides.hpp"
+#include "core/solids/continuum.hpp"
+#include "core/solids/edges.hpp"
+
+namespace stickslip {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+struct Made {
+  Mesh mesh;
+  Points<double> points;
+};
+
+Made make(const MeshDescription& description, const std::string& element) {
+  const Mesh mesh = make_mesh(description, element, 3);
+  return {mesh, make_points<double>(description, mesh, Numbers<double>{})};
+}
+
+double volume(const Made& made) {
+  double sum = 0;
+  with_shape(made.mesh.shape, [&]<class Shape>(Shape) {
+    if constexpr (Shape::dimension == 3)
+      for (int e = 0; e < made.mesh.element_count(); ++e) {
+        Nodal<double, Shape> X;
+        for (int a = 0; a < Shape::nodes; ++a) X.col(a) = made.points.col(made.mesh.connectivity[e * Shape::nodes + a]);
+        for (const auto& point : Shape::quadrature()) sum += Gradient<double, Shape>(point, X).volume;
+      }
+  });
+  return sum;
+}
+
+/// The vector area of a side, out of the body.
+Vec<double, 3> outward(const Made& made, const Side& side) {
+  Vec<double, 3> sum = Vec<double, 3>::Zero();
+  for (const auto& facet : side.facets)
+    for_each_side_point(made.points, facet, Depth<double>{}, [&](const auto&, const auto& out, double) { sum += out; });
+  return sum;
+}
+
+/// Every face of an element is one of exactly two, turned the other way, or of the boundary; the boundary is closed.
+void expect_fits_together(const Made& made) {
+  EXPECT_FALSE(first_inverted_element(made.mesh, made.points));
+  EXPECT_FALSE(first_thin_element(made.mesh, made.points));
+  const int count = nodes_of(made.mesh.shape);
+  std::map<std::set<int>, int> faces;
+  for (int e = 0; e < made.mesh.element_count(); ++e)
+    for (const auto& side : sides_of(made.mesh.shape)) {
+      std::set<int> nodes;
+      for (const int a : side) nodes.insert(made.mesh.connectivity[e * count + a]);
+      ++faces[nodes];
+    }
+  const Side boundary = boundary_of(made.mesh);
+  std::size_t single = 0;
+  for (const auto& [nodes, times] : faces) {
+    EXPECT_LE(times, 2);
+    single += times == 1;
+  }
+  EXPECT_EQ(boundary.facets.size(), single);
+  EXPECT_LE(outward(made, boundary).norm(), 1e-12);  // some hundred faces of size one
+  std::size_t named = 0;                             // the sides of a generated block are all of its boundary
+  for (const auto& [name, side] : made.mesh.sides) named += side.facets.size();
+  EXPECT_EQ(named, boundary.facets.size());
+}
+
+TEST(SolidMeshes, BoxesFillTheirVolumeAndFaceOutward) {
+  BoxMesh box;
+  box.min = {1.0, -1.0, 2.0};
+  box.max = {3.0, 2.0, 6.0};
+  box.cells = {3, 2, 4};
+  box.grade_towards = "bottom";
+  box.grade = 3.0;
+  for (const char* element : {"", "H8", "H8_mean_dilatation", "T4"}) {
+    const Made made = make(box, element);
+    EXPECT_EQ(made.mesh.node_count, 4 * 3 * 5);
+    EXPECT_EQ(made.mesh.element_count(), 24 * (std::string(element) == "T4" ? 6 : 1));
+    EXPECT_NEAR(volume(made), 24, 1e-12);  // a sum of some hundred volumes
+    expect_fits_together(made);
+    const std::map<std::string, Vec<double, 3>> areas{{"left", {-12, 0, 0}},  {"right", {12, 0, 0}},
+                                                      {"front", {0, -8, 0}},  {"back", {0, 8, 0}},
+                                                      {"bottom", {0, 0, -6}}, {"top", {0, 0, 6}}};
+    for (const auto& [name, area] : areas)
+      EXPECT_LE((outward(made, made.mesh.sides.at(name)) - area).norm(), 1e-12) << name << element;
+    const Side edge = evaluate_side(made.mesh, "front & bottom");
+    EXPECT_EQ(edge.nodes.size(), 4u);
+    EXPECT_TRUE(edge.facets.empty());
+    // the cells next to the bottom are a third as high as those next to the top
+    const double low = made.points(2, 12) - 2, high = 6 - made.points(2, 12 * 3);
+    EXPECT_NEAR(high / low, 3, 1e-12);
+  }
+}
+
+TEST(SolidMeshes, ExtrudedOnesHaveTheSidesOfThePlaneAndTwoEnds) {
+  RingMesh ring;
+  ring.center = {0.0, 0.0};
+  ring.inner = 1.0;
+  ring.outer = 2.0;
+  ring.cells = {2, 48};
+  const ExtrudedMesh tube{ring, -1.0, 2.0, 3};
+  for (const char* element : {"H8", "T4"}) {
+    const Made made = make(tube, element);
+    const double polygon = 48.0 / 2 * std::sin(2 * pi / 48) * (4 - 1);
+    EXPECT_NEAR(volume(made), 3 * polygon, 1e-11);
+    expect_fits_together(made);
+    for (const char* name : {"inner", "outer", "front", "back"}) EXPECT_EQ(made.mesh.sides.count(name), 1u) << name;
+    EXPECT_LE((outward(made, made.mesh.sides.at("back")) - Vec<double, 3>(0, 0, polygon)).norm(), 1e-12);
+    double area = 0;
+    for (const auto& facet : made.mesh.sides.at("outer").facets)
+      for (const double share : side_shares(made.points, facet, Depth<double>{})) area += share;
+    EXPECT_NEAR(area, 3 * 48 * 2 * 2 * std::sin(pi / 48), 1e-11);
+  }
+}
+
+TEST(SolidMeshes, AreRefusedWithAReason) {
+  BoxMesh flat;
+  flat.max = {1.0, 1.0};
+  EXPECT_NE(mesh_fault(flat, "", 3).find("one number an axis, 3"), std::string::npos) << mesh_fault(flat, "", 3);
+  BoxMesh box;
+  box.min = {0.0, 0.0, 0.0};
+  box.max = {1.0, 1.0, 1.0};
+  box.cells = {1, 1, 1};
+  EXPECT_EQ(mesh_fault(box, "", 3), "");
+  EXPECT_NE(mesh_fault(box, "Q4", 3).find("H8, H8_mean_dilatation or T4, not Q4"), std::string::npos);
+  EXPECT_NE(mesh_fault(box, "", 2).find("one number an axis, 2"), std::string::npos);
+  ExtrudedMesh upside_down{flat, 1.0, 0.0, 1};
+  EXPECT_NE(mesh_fault(upside_down, "", 3).find("greater than from"), std::string::npos);
+  upside_down.to = 2.0;
+  EXPECT_EQ(mesh_fault(upside_down, "", 3), "");
+  EXPECT_NE(mesh_fault(upside_down, "", 2).find("needs the space solid"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace stickslip

@@ -1,0 +1,169 @@
+/// Solid bodies in space: scenes of plane strain, drawn out by one layer and held along z, have the plane's answers and
+/// derivatives; and what is truly of space against the complex step of the whole program, in both modes.
+#include "tests/support/extruded.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/finite_strain.hpp"
+
+namespace stickslip {
+namespace {
+
+using Kind = Response::Kind;
+
+/// A block that is pressed on a floor and drawn along it.
+Scene drawn_block(const Material& material, bool finite, const std::string& element = "") {
+  Scene s;
+  s.finite_strain = finite;
+  s.legs = {{1, 2}, {2, 3}};
+  const Number mu = scenes::parameter(s, "mu", 0.3), width = scenes::parameter(s, "width", 2.0),
+               down = scenes::parameter(s, "down", -0.08), thickness = scenes::parameter(s, "thickness", 0.7);
+  BoxMesh box;
+  box.max = {width, 1.0};
+  box.cells = {5, 3};
+  s.bodies = {{"block", box, material, element, 1.0}};
+  s.bodies[0].thickness = thickness;
+  s.obstacles = {{"floor", Plane{{0.0, 0.0}, {0.02, 1.0}}, {}}};
+  s.contacts = {scenes::contact("sole", "block.bottom", "floor")};
+  s.contacts[0].friction = mu;
+  s.supports = {scenes::support(
+      "block.top", {{'x', scenes::table({{1, 0.0}, {2, 0.1}})}, {'y', scenes::table({{0, 0.0}, {1, down}})}})};
+  s.loads = {{"block.left", Load::Kind::pressure, {2.0}, {}}};
+  s.responses = {scenes::response("press", Kind::contact_force, "sole", "normal"),
+                 scenes::response("shear", Kind::contact_force, "sole", "x"),
+                 scenes::response("pull", Kind::reaction, "block.top", "x"),
+                 scenes::response("heat", Kind::dissipation, "sole"),
+                 scenes::response("peak", Kind::contact_pressure, "sole", "", Response::Take::max)};
+  return s;
+}
+
+/// A block that sinks between a floor and a drum.
+Scene under_a_drum(bool finite) {
+  Scene s = drawn_block(finite ? Material(NeoHookean{1000.0, 0.3}) : Material(LinearElastic{1000.0, 0.3}), finite);
+  const Number radius = scenes::parameter(s, "radius", 1.5);
+  s.obstacles.push_back({"drum", Circle{{0.9, 2.5}, radius}, {{'y', scenes::table({{0, 0.0}, {1, -0.1}})}}});
+  s.contacts.push_back(scenes::contact("roof", "block.top", "drum"));
+  s.contacts[0].friction.reset();
+  s.supports = {scenes::support("block.left", {{'x', scenes::table({{0, 0.0}})}})};
+  s.loads.clear();
+  s.responses = {scenes::response("press", Kind::contact_force, "roof", "normal"),
+                 scenes::response("wide", Kind::displacement, "block.right", "x"),
+                 scenes::response("energy", Kind::strain_energy, "")};
+  return s;
+}
+
+const J2Plastic metal{1000.0, 0.3, 12.0, 50.0};
+
+std::vector<Scene> plane_scenes() {
+  const LinearElastic elastic{1000.0, 0.3};
+  const NeoHookean rubber{1000.0, 0.3, NeoHookean::Volumetric::log};
+  std::vector<Scene> all{scenes::greco_plate(6),
+                         scenes::driven_block(),
+                         drawn_block(elastic, false),
+                         drawn_block(elastic, false, "Q4_mean_dilatation"),
+                         drawn_block(metal, false),
+                         drawn_block(rubber, true),
+                         drawn_block(rubber, true, "Q4_mean_dilatation"),
+                         drawn_block(metal, true),
+                         under_a_drum(false),
+                         under_a_drum(true)};
+  for (auto& scene : all) {  // what the plane alone can be asked
+    std::erase_if(scene.responses, [](const Response& response) {
+      return response.component == Response::Component::moment || response.kind == Kind::contact_half_width;
+    });
+  }
+  return all;
+}
+
+TEST(Extruded, ScenesOfPlaneStrainHaveTheirAnswersAndDerivativesInSpace) {
+  UzawaAL uzawa;
+  uzawa.tolerance = 1e-12;
+  int number = 0;
+  for (const Scene& plane : plane_scenes()) {
+    SCOPED_TRACE(number++);
+    for (const Method& method : {Method(uzawa), Method(MonolithicAL{})}) {
+      const auto in_plane = scenes::run(plane, method), in_space = scenes::run(scenes::extruded(plane), method);
+      ASSERT_TRUE(is_converged(in_plane.trajectory.status)) << in_plane.trajectory.message;
+      ASSERT_TRUE(is_converged(in_space.trajectory.status)) << in_space.trajectory.message;
+      const auto &expected = in_plane.trajectory.increments, &found = in_space.trajectory.increments;
+      ASSERT_EQ(found.size(), expected.size());
+      const auto responses = [](const scenes::Solved& s, std::size_t n) {
+        const auto& increment = s.trajectory.increments[n];
+        return evaluate_responses(s.model, s.slots, increment.state, increment.time);
+      };
+      Vector<double> size = Vector<double>::Zero(plane.responses.size());
+      Matrix<double> slope = Matrix<double>::Zero(plane.responses.size(), plane.parameters.size());
+      for (std::size_t n = 0; n < expected.size(); ++n) {
+        size = size.cwiseMax(responses(in_plane, n).cwiseAbs());
+        slope = slope.cwiseMax(in_plane.gradients.of_responses[n].cwiseAbs());
+      }
+      for (std::size_t n = 0; n < expected.size(); ++n) {
+        const auto of_plane = responses(in_plane, n), of_space = responses(in_space, n);
+        for (Eigen::Index r = 0; r < size.size(); ++r) {
+          const std::string what =
+              std::string(name_of(method)) + " " + plane.responses[r].name + " " + std::to_string(n);
+          EXPECT_NEAR(of_space[r], of_plane[r], 1e-9 * size[r]) << what;  // the tolerance of the runs, a hundred times
+          for (Eigen::Index j = 0; j < slope.cols(); ++j) {
+            const double scale = std::max(slope(r, j), size[r] / std::abs(plane.parameters[j].value));
+            EXPECT_NEAR(in_space.gradients.of_responses[n](r, j), in_plane.gradients.of_responses[n](r, j),
+                        1e-8 * scale)
+                << what << " by " << plane.parameters[j].name;
+          }
+        }
+      }
+    }
+  }
+}
+
+/// A block of space that is pressed on a skew floor, drawn along two directions and twisted.
+Scene twisted_block(const Material& material, bool finite, const std::string& element = "") {
+  Scene s;
+  s.space = Space::solid;
+  s.finite_strain = finite;
+  s.legs = {{1, 2}, {2, 2}};
+  const Number mu = scenes::parameter(s, "mu", 0.3), depth = scenes::parameter(s, "depth", 0.9),
+               twist = scenes::parameter(s, "twist", 4.0), tilt = scenes::parameter(s, "tilt", 0.03),
+               pressure = scenes::parameter(s, "pressure", 3.0), grade = scenes::parameter(s, "grade", 2.0);
+  BoxMesh box;
+  box.min = {0.0, 0.0, 0.0};
+  box.max = {1.2, depth, 0.8};
+  box.cells = {3, 2, 2};
+  box.grade_towards = "bottom";
+  box.grade = grade;
+  s.bodies = {{"block", box, material, element, 1.0}};
+  s.obstacles = {{"floor", Plane{{0.0, 0.0, -0.04}, {tilt, -0.02, 1.0}}, {}}};
+  s.contacts = {scenes::contact("sole", "block.bottom", "floor")};
+  s.contacts[0].friction = mu;
+  Support top = scenes::support(
+      "block.top", {{'x', scenes::table({{1, 0.0}, {2, 0.03}})}, {'z', scenes::table({{0, 0.0}, {1, -0.12}})}});
+  top.rotate = Rotation{{0.6, 0.4, 0.8}, {0.1, 0.0, 1.0}, scenes::table({{1, 0.0}, {2, twist}})};
+  s.supports = {top};
+  s.loads = {{"block.back", Load::Kind::pressure, {pressure}, {}},
+             {"block", Load::Kind::body_force, {0.5, 0.0, -2.0}, {}},
+             {"block.left", Load::Kind::traction, {0.3, 0.1, -0.2}, {}}};
+  s.responses = {scenes::response("press", Kind::contact_force, "sole", "normal"),
+                 scenes::response("x", Kind::contact_force, "sole", "x"),
+                 scenes::response("y", Kind::contact_force, "sole", "y"),
+                 scenes::response("pull", Kind::reaction, "block.top", "y"),
+                 scenes::response("heat", Kind::dissipation, "sole"),
+                 scenes::response("slip", Kind::slip, "sole", "x"),
+                 scenes::response("energy", Kind::strain_energy, "")};
+  return s;
+}
+
+TEST(SolidBodies, HaveTheDerivativesOfTheOracleInBothModes) {
+  const NeoHookean rubber{1000.0, 0.3};
+  for (const Method& method : scenes::finite_schemes()) {
+    scenes::expect_derivatives_in_both_modes(twisted_block(LinearElastic{1000.0, 0.3}, false), method);
+    scenes::expect_derivatives_in_both_modes(twisted_block(LinearElastic{1000.0, 0.3}, false, "T4"), method);
+    scenes::expect_derivatives_in_both_modes(twisted_block(rubber, true), method);
+  }
+  const MonolithicAL monolithic;
+  scenes::expect_derivatives_in_both_modes(twisted_block(rubber, true, "H8_mean_dilatation"), monolithic);
+  scenes::expect_derivatives_in_both_modes(twisted_block(rubber, true, "T4"), monolithic);
+  scenes::expect_derivatives_in_both_modes(twisted_block(metal, false), monolithic);
+  scenes::expect_derivatives_in_both_modes(twisted_block(metal, true), monolithic);
+}
+
+}  // namespace
+}  // namespace stickslip
