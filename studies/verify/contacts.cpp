@@ -27,7 +27,7 @@ Contact::Contact(const Scene& scene, const std::string& called, const Json& side
       body_(scene.body(sides.at("slave"))),
       side_(scene.side(sides.at("slave"))),
       master_(scene, given, sides.at("slave"), sides.at("master")),
-      facets_(facets_of(side_)),
+      facets_(body_.in_space() ? Facets{} : facets_of(side_)),
       areas_(areas_of(scene, body_, side_)) {
   for (auto& [node, area] : areas_)
     if (side_.edges.empty() && body_.element == "bar") area = body_.area();

@@ -246,11 +246,17 @@ Foot Master::foot(const Seeker& seeker) const {
       foot.normal = vec3(obstacle["plane"].at("normal")).stableNormalized();
       foot.gap = foot.normal.dot(x - vec3(obstacle["plane"].at("point")));
     } else {
-      const Json& circle = obstacle.at("circle");
-      const double side = circle.value("inside", false) ? -1 : 1;
-      const Vec3 arm = x - vec3(circle.at("center"));
+      const bool has_axis = obstacle.contains("cylinder");
+      const Json& round =
+          has_axis ? obstacle["cylinder"] : obstacle.at(obstacle.contains("sphere") ? "sphere" : "circle");
+      const double side = round.value("inside", false) ? -1 : 1;
+      Vec3 arm = x - vec3(round.at(has_axis ? "point" : "center"));
+      if (has_axis) {
+        const Vec3 axis = vec3(round.at("axis")).normalized();
+        arm -= axis.dot(arm) * axis;
+      }
       foot.normal = side * arm.normalized();
-      foot.gap = side * (arm.norm() - circle.at("radius").get<double>());
+      foot.gap = side * (arm.norm() - round.at("radius").get<double>());
     }
     foot.y = x - foot.gap * foot.normal;
     return foot;

@@ -36,12 +36,14 @@ std::optional<Vec3> displacement_at(const State& state, const Json& how) {
       const double distance = off.minCoeff(&nearest), size = off.maxCoeff();
       if (distance <= at_end * size) return Vec3(state.u.col(element[nearest]));
       if (!body.solid() || distance > (nodes.colwise() - nodes.col(0)).colwise().norm().maxCoeff()) continue;
-      Vec2 r = natural_nodes(body).rowwise().mean();
+      Vec3 r = natural_nodes(body).rowwise().mean();
       for (int k = 0; k < 20; ++k) {
         const Shape at = shape(body, r);
-        r += (nodes.topRows<2>() * at.gradient).inverse() * (X - nodes * at.value).head<2>();
+        Mat3 slope = nodes * at.gradient;
+        if (!body.in_space()) slope(2, 2) = 1;
+        r += slope.inverse() * (X - nodes * at.value);
       }
-      const double past = body.corners() == 3 ? std::max(-r.minCoeff(), r.sum() - 1) : r.cwiseAbs().maxCoeff() - 1;
+      const double past = body.element[0] == 'T' ? std::max(-r.minCoeff(), r.sum() - 1) : r.cwiseAbs().maxCoeff() - 1;
       if (past <= 1e-6) return Vec3(state.u(Eigen::all, element) * shape(body, r).value);
     }
   return std::nullopt;

@@ -6,15 +6,27 @@
 namespace stickslip::verify {
 namespace {
 
+/// The edges of an element, in space its faces, by numbers of its nodes.
+std::vector<Nodes> sides_of(const Body& body) {
+  if (body.element == "T4") return {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  if (body.in_space()) return {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  std::vector<Nodes> sides;
+  const int corners = static_cast<int>(body.corners());
+  for (int e = 0; e < corners; ++e) {
+    sides.push_back({e, (e + 1) % corners});
+    if (body.quadratic()) sides.back().push_back(corners + e);
+  }
+  return sides;
+}
+
 /// Edges of one element alone are of the boundary.
 std::vector<Nodes> boundary_of(const Body& body) {
-  std::map<std::pair<int, int>, std::vector<Nodes>> edges;
-  const std::size_t corners = body.corners();
+  std::map<std::set<int>, std::vector<Nodes>> edges;
   for (const auto& element : body.elements)
-    for (std::size_t e = 0; e < corners; ++e) {
-      Nodes edge{element.at(e), element.at((e + 1) % corners)};
-      if (body.quadratic()) edge.push_back(element.at(corners + e));
-      edges[std::minmax(edge[0], edge[1])].push_back(edge);
+    for (const auto& side : sides_of(body)) {
+      Nodes edge;
+      for (const int a : side) edge.push_back(element.at(a));
+      edges[{edge.begin(), edge.end()}].push_back(edge);
     }
   std::vector<Nodes> boundary;
   for (const auto& [ends, shared] : edges)
@@ -24,8 +36,11 @@ std::vector<Nodes> boundary_of(const Body& body) {
 
 /// Throws where elements are of no known kind or have other nodes than it, or where nodes are not there.
 void check(const Body& body, Eigen::Index nodes) {
-  static const std::map<std::string, std::size_t> sizes{
-      {"point", 2}, {"bar", 2}, {"T3", 3}, {"T6", 6}, {"Q4", 4}, {"Q4_mean_dilatation", 4}, {"Q8", 8}};
+  static const std::map<std::string, std::size_t> sizes{{"point", 2}, {"bar", 2},
+                                                        {"T3", 3},    {"T6", 6},
+                                                        {"Q4", 4},    {"Q4_mean_dilatation", 4},
+                                                        {"Q8", 8},    {"T4", 4},
+                                                        {"H8", 8},    {"H8_mean_dilatation", 8}};
   auto lists = body.elements;
   for (const auto& [name, side] : body.sides) lists.push_back(side);
   for (const int node : lists | std::views::join)
@@ -182,7 +197,9 @@ Side Scene::side(const std::string& expression) const {
 }
 
 double Scene::depth(const Body& body, double x) const {
-  return axisymmetric ? 2 * std::numbers::pi * x : body.element == "bar" ? 1 : body.given.value("thickness", 1.0);
+  return axisymmetric                               ? 2 * std::numbers::pi * x
+         : body.element == "bar" || body.in_space() ? 1
+                                                    : body.given.value("thickness", 1.0);
 }
 
 bool Scene::on_axis(int node) const {

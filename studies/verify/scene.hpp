@@ -60,23 +60,27 @@ struct Body {
   Json given;  ///< its entry in the scene
   std::vector<Nodes> elements;
   std::map<std::string, Nodes> sides;
-  std::vector<Nodes> edges = {};  ///< of the boundary, the solid on the left: two ends, and a middle
+  /// Of the boundary, the solid on the left: two ends, and a middle; in space its faces, counter-clockwise seen from
+  /// outside.
+  std::vector<Nodes> edges = {};
+  bool in_space() const { return element.starts_with("H8") || element == "T4"; }
+  bool averages() const { return element.ends_with("mean_dilatation"); }
   bool quadratic() const { return element == "Q8" || element == "T6"; }
   bool spring() const { return element == "point"; }
   bool solid() const { return element != "bar" && !spring(); }
-  std::size_t corners() const { return element[0] == 'T' ? 3 : 4; }
+  std::size_t corners() const { return in_space() ? (element == "T4" ? 4 : 8) : element[0] == 'T' ? 3 : 4; }
   double area() const { return given.value("area", 1.0); }  ///< of bars
   Mat3 stiffness() const;                                   ///< of a spring
 };
 
-/// Nodes of a side, and the edges of the boundary that belong to it.
+/// Nodes of a side, and the edges of the boundary that belong to it, in space its faces.
 struct Side {
   std::set<int> nodes;
   std::vector<Nodes> edges;
   bool has(int node) const { return nodes.contains(node); }
 };
 
-/// An edge of a side, or half of one that has a middle: x(s) = (1 - s) x_a + s x_b, and of a half in addition
+/// An edge of a side in the plane, or half of one that has a middle: x(s) = (1 - s) x_a + s x_b, and of a half in addition
 /// s (1 - s) (x_middle - (x_start + x_end) / 2).
 struct Facet {
   std::array<int, 2> ends;

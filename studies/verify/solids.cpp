@@ -127,28 +127,42 @@ Answer respond_along(const Material& material, const Vec3& axis, const Mat3& H, 
 
 // --- elements --------------------------------------------------------------------------------------------------------
 
-/// The polynomials r^a s^b of T3, T6, Q4 and Q8 at a place, and their derivatives by r and s.
-Field polynomials(const Body& body, const Vec2& at) {
-  static const Places triangle{{0, 1, 0, 2, 1, 0}, {0, 0, 1, 0, 1, 2}},
-      square{{0, 1, 0, 1, 2, 0, 2, 1}, {0, 0, 1, 1, 0, 2, 1, 2}};
-  const Eigen::Array2Xd p = (body.corners() == 3 ? triangle : square).leftCols(natural_nodes(body).cols());
-  const Eigen::Array2Xd power = at.array().replicate(1, p.cols()).pow(p),
+/// The polynomials r^a s^b t^c of an element at a place, and their derivatives by r, s and t.
+Eigen::Matrix4Xd polynomials(const Body& body, const Vec3& at) {
+  static const Field triangle{{0, 1, 0, 2, 1, 0}, {0, 0, 1, 0, 1, 2}, {0, 0, 0, 0, 0, 0}},
+      square{{0, 1, 0, 1, 2, 0, 2, 1}, {0, 0, 1, 1, 0, 2, 1, 2}, {0, 0, 0, 0, 0, 0, 0, 0}},
+      tetrahedron{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
+      cube{{0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
+  const Field& all =
+      body.in_space() ? (body.element == "T4" ? tetrahedron : cube) : (body.corners() == 3 ? triangle : square);
+  const Eigen::Array3Xd p = all.leftCols(natural_nodes(body).cols());
+  const Eigen::Array3Xd power = at.array().replicate(1, p.cols()).pow(p),
                         slope = p * at.array().replicate(1, p.cols()).pow((p - 1).max(0));
-  Field rows(3, p.cols());
-  rows << power.row(0) * power.row(1), slope.row(0) * power.row(1), power.row(0) * slope.row(1);
+  Eigen::Matrix4Xd rows(4, p.cols());
+  rows << power.row(0) * power.row(1) * power.row(2), slope.row(0) * power.row(1) * power.row(2),
+      power.row(0) * slope.row(1) * power.row(2), power.row(0) * power.row(1) * slope.row(2);
   return rows;
 }
 
-/// r, s, weight. Rules of full rank: three points of Q8 each way, three of T3 of revolution.
-std::vector<Vec3> rule(const Body& body, bool of_revolution) {
-  if (body.element == "T3" && !of_revolution) return {{1.0 / 3, 1.0 / 3, 0.5}};
-  if (body.corners() == 3)
-    return {{1.0 / 6, 1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}};
-  std::vector<Vec3> points;
-  const auto each_way = edge_points(body.quadratic() ? 3 : 2, true);
-  for (const auto& along : each_way)
-    for (const auto& across : each_way)
-      points.emplace_back(2 * along.s - 1, 2 * across.s - 1, 4 * along.weight * across.weight);
+/// r, s, t, and a weight.
+using Gauss = std::pair<Vec3, double>;
+
+/// Rules of full rank: three points of Q8 each way, three of T3 of revolution.
+std::vector<Gauss> rule(const Body& body, bool of_revolution) {
+  if (body.element == "T3" && !of_revolution) return {{{1.0 / 3, 1.0 / 3, 0}, 0.5}};
+  if (body.element == "T4") return {{{0.25, 0.25, 0.25}, 1.0 / 6}};
+  if (body.corners() == 3) {
+    const double sixth = 1.0 / 6;
+    return {{{sixth, sixth, 0}, sixth}, {{4 * sixth, sixth, 0}, sixth}, {{sixth, 4 * sixth, 0}, sixth}};
+  }
+  std::vector<Gauss> points{{Vec3::Zero(), 1}};
+  for (int axis = 0; axis < (body.in_space() ? 3 : 2); ++axis) {
+    std::vector<Gauss> longer;
+    for (const auto& [place, weight] : points)
+      for (const auto& along : edge_points(body.quadratic() ? 3 : 2, true))
+        longer.emplace_back(place + (2 * along.s - 1) * Vec3::Unit(axis), weight * 2 * along.weight);
+    points = std::move(longer);
+  }
   return points;
 }
 
@@ -167,13 +181,13 @@ struct Point {
 };
 
 Point point_of(const Scene& scene, const Body& body, const Nodes& element, const Shape& at, double weight = 0) {
-  const Places X = scene.points(Eigen::seqN(0, 2), element);
-  const Eigen::Matrix2d jacobian = X * at.gradient;
+  const Field X = scene.points(Eigen::all, element);
+  Mat3 jacobian = X * at.gradient;
+  if (!body.in_space()) jacobian(2, 2) = 1;
   const double radius = X.row(0).dot(at.value);
   Point point{jacobian.determinant() * weight * scene.depth(body, radius), at.value};
   point.hoop = (scene.axisymmetric ? 1 / radius : 0) * at.value;
-  point.gradient.setZero(at.value.size(), 3);
-  point.gradient.leftCols<2>() = at.gradient * jacobian.inverse();
+  point.gradient = at.gradient * jacobian.inverse();
   return point;
 }
 
@@ -187,7 +201,7 @@ std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& 
   static std::map<std::pair<std::string, bool>, std::vector<std::pair<Shape, double>>> known;
   auto& shapes = known[{body.element, scene.axisymmetric}];
   if (shapes.empty())
-    for (const auto& at : rule(body, scene.axisymmetric)) shapes.emplace_back(shape(body, at.head<2>()), at[2]);
+    for (const auto& at : rule(body, scene.axisymmetric)) shapes.emplace_back(shape(body, at.first), at.second);
   std::vector<Point> points;
   for (const auto& [at, weight] : shapes) points.push_back(point_of(scene, body, element, at, weight));
   return points;
@@ -208,7 +222,7 @@ Answer answer_of(const Scene& scene, const Body& body, const Point& point, Mat3&
 /// Forces of an element on its nodes.
 Field element_forces(const Scene& scene, const Body& body, const std::vector<Point>& points, const Field& u,
                      std::vector<Particle>& particles, Bodies& bodies) {
-  const bool finite = scene.finite, mean = body.element == "Q4_mean_dilatation";
+  const bool finite = scene.finite, mean = body.averages();
   const Mat3 I = Mat3::Identity();
   const auto change = [&](const Mat3& H) { return finite ? volume_change(H) : H.trace(); };
   double whole = 0, theta = 0;  // volume, and mean of J - 1 or tr H
@@ -242,17 +256,35 @@ Field element_forces(const Scene& scene, const Body& body, const std::vector<Poi
 
 // --- loads -----------------------------------------------------------------------------------------------------------
 
-/// Integrates over a side, of edges at `places`: adds up, at each of its nodes, N times depth ds and a vector dx / ds;
-/// of an edge, at a Gauss point of it.
+/// Integrates over a face of three or four nodes at `places`: as over_side().
+template <class F>
+void over_face(const Side& side, const Nodes& face, const Field& places, F&& add) {
+  const Body as{"", face.size() == 3 ? "T3" : "Q4", {}, {}, {}};  // a face is an element of a surface
+  const Field at = places(Eigen::all, face);
+  for (const auto& [place, weight] : rule(as, false)) {
+    const Shape N = shape(as, place);
+    const Vec3 outward = (at * N.gradient.col(0)).cross(at * N.gradient.col(1));
+    for (std::size_t a = 0; a < face.size(); ++a)
+      if (side.has(face[a])) add(face[a], weight * N.value[a], outward, face, 0.0);
+  }
+}
+
+/// Integrates over a side, of edges or faces at `places`: adds up, at each of its nodes, a weight times N, and the vector
+/// area out of the body that it stands for; of an edge, at a place of it.
 template <class F>
 void over_side(const Scene& scene, const Body& body, const Side& side, const Field& places, F&& add) {
+  if (body.in_space()) {
+    for (const auto& face : side.edges) over_face(side, face, places, add);
+    return;
+  }
   for (const auto& edge : side.edges)
     for (const auto& point : edge_points(edge.size(), scene.axisymmetric)) {
       const Field at = places(Eigen::all, edge);
       const Vec3 tau = at * point.slope;
       const double width = point.weight * scene.depth(body, at.row(0).dot(point.value));
       for (std::size_t a = 0; a < edge.size(); ++a)
-        if (side.has(edge[a])) add(edge[a], width * point.value[a], tau, edge, point);
+        if (side.has(edge[a]))  // (of a bar the length alone has a meaning)
+          add(edge[a], width * point.value[a], Vec3(tau[1], -tau[0], tau[2]), edge, point.s);
     }
 }
 
@@ -261,7 +293,7 @@ double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge
   const Nodes& element = *std::ranges::find_if(body.elements, [&](const Nodes& nodes) {
     return std::ranges::count(nodes, edge[0]) + std::ranges::count(nodes, edge[1]) == 2;
   });
-  const auto corner = [&](int node) -> Vec2 {
+  const auto corner = [&](int node) -> Vec3 {
     return natural_nodes(body).col(std::ranges::find(element, node) - element.begin());
   };
   const Shape at = shape(body, (1 - s) * corner(edge[0]) + s * corner(edge[1]));
@@ -284,19 +316,22 @@ double factor_of(const Scene& scene, std::size_t index, const Json& load, double
 
 }  // namespace
 
-Places natural_nodes(const Body& body) {
-  static const Places triangle{{0, 1, 0, 0.5, 0.5, 0}, {0, 0, 1, 0, 0.5, 0.5}},
-      square{{-1, 1, 1, -1, 0, 1, 0, -1}, {-1, -1, 1, 1, -1, 0, 1, 0}};
+Field natural_nodes(const Body& body) {
+  static const Field triangle{{0, 1, 0, 0.5, 0.5, 0}, {0, 0, 1, 0, 0.5, 0.5}, {0, 0, 0, 0, 0, 0}},
+      square{{-1, 1, 1, -1, 0, 1, 0, -1}, {-1, -1, 1, 1, -1, 0, 1, 0}, {0, 0, 0, 0, 0, 0, 0, 0}},
+      tetrahedron{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
+      cube{{-1, 1, 1, -1, -1, 1, 1, -1}, {-1, -1, 1, 1, -1, -1, 1, 1}, {-1, -1, -1, -1, 1, 1, 1, 1}};
+  if (body.in_space()) return body.element == "T4" ? tetrahedron : cube;
   const auto nodes = static_cast<Eigen::Index>(body.corners() * (body.quadratic() ? 2 : 1));
   return (body.corners() == 3 ? triangle : square).leftCols(nodes);
 }
 
-Shape shape(const Body& body, const Vec2& at) {
-  const Places nodes = natural_nodes(body);
+Shape shape(const Body& body, const Vec3& at) {
+  const Field nodes = natural_nodes(body);
   Eigen::MatrixXd at_nodes(nodes.cols(), nodes.cols());
   for (Eigen::Index a = 0; a < nodes.cols(); ++a) at_nodes.row(a) = polynomials(body, nodes.col(a)).row(0);
-  const Field N = polynomials(body, at) * at_nodes.inverse();
-  return {N.row(0), N.bottomRows<2>().transpose()};
+  const Eigen::Matrix4Xd N = polynomials(body, at) * at_nodes.inverse();
+  return {N.row(0), N.bottomRows<3>().transpose()};
 }
 
 std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution) {
@@ -314,7 +349,7 @@ std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution) {
 std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side) {
   std::map<int, double> areas;
   over_side(scene, body, side, scene.points,
-            [&](int node, double width, const Vec3& tau, auto&...) { areas[node] += width * tau.norm(); });
+            [&](int node, double share, const Vec3& outward, auto&&...) { areas[node] += share * outward.norm(); });
   for (const int node : side.nodes)
     if (side.edges.empty()) areas[node] = 1;
   return areas;
@@ -359,9 +394,9 @@ Field load_forces(const Scene& scene, const Field& u, double time) {
       const double p = factor * load["pressure"].get<double>();
       const bool thins = scene.finite && scene.plane_stress;
       over_side(scene, body, side, scene.places(u),
-                [&](int node, double width, const Vec3& tau, const Nodes& edge, const EdgePoint& at) {
-                  const double stretch = thins ? thickness_stretch(scene, body, edge, at.s, u) : 1;
-                  forces.col(node) += p * stretch * width * Vec3(-tau[1], tau[0], 0);
+                [&](int node, double share, const Vec3& outward, const Nodes& edge, double s) {
+                  const double stretch = thins ? thickness_stretch(scene, body, edge, s, u) : 1;
+                  forces.col(node) -= p * stretch * share * outward;
                 });
     } else {  // a traction by the areas of the nodes, or a force in all that they share by these
       const auto areas = areas_of(scene, body, side);

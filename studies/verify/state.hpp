@@ -8,20 +8,21 @@ namespace stickslip::verify {
 
 // --- solids ----------------------------------------------------------------------------------------------------------
 // Without tangents, which a check does not need (core/README.md, Elements, Shares). Corners come first, then the
-// middles of the sides in turn, counter-clockwise. A square is [-1, 1]^2, a triangle r, s >= 0, r + s <= 1.
+// middles of the sides in turn, counter-clockwise. A square is [-1, 1]^2, a triangle r, s >= 0, r + s <= 1; in space a
+// cube is [-1, 1]^3, its nodes at t = -1 first, a tetrahedron r, s, t >= 0, r + s + t <= 1.
 //
 //   f_a = int P grad N_a dV,   of revolution + e_r int P_33 N_a / R dV,   H = sum u_a (x) grad N_a,  H_33 = u_r / R
 //   mean dilatation: F -> (theta / J)^(1/3) F, theta the mean of J; small: H -> H + (theta - tr H) / 3 I  [H80, MOS90]
 //   bar:  N = E A e,  e = (T.d + d.d / 2) / L^2 at finite strain, T.d / L^2 at small;  spring: f = K (u - u_anchor)
 
-Places natural_nodes(const Body& body);  ///< r, s of each node of an element
+Field natural_nodes(const Body& body);  ///< r, s, t of each node of an element; in the plane t = 0
 
-/// Shape functions N at a place: the polynomials that are 1 at their node and 0 at the others; their gradients by r, s.
+/// Shape functions N at a place: the polynomials that are 1 at their node and 0 at the others; their gradients by r, s, t.
 struct Shape {
   Eigen::VectorXd value;
-  Eigen::MatrixX2d gradient;
+  Eigen::MatrixX3d gradient;
 };
-Shape shape(const Body& body, const Vec2& at);
+Shape shape(const Body& body, const Vec3& at);
 
 /// A Gauss point of an edge: weight, place from its first end to its second, shape functions and their slopes.
 struct EdgePoint {
@@ -63,7 +64,7 @@ Field load_forces(const Scene& scene, const Field& u, double time);
 // start.
 //
 //   y(xi) = sum N_i(xi) y_i,   (x - y) . y' = 0,   n across y',   g = n . (x - y)      on facets and smooth patches
-//   g = n . (x - p);   g = +- (|x - c| - r)                                            on a plane; a circle
+//   g = n . (x - p);   g = +- (|x - c| - r)                                            on a plane; a circle or sphere; a cylinder from its axis
 //   small strain:   g = g_0 + offset + n . w,   w = sum of weights u - u_obstacle,   slip = what w grew by, across n
 //   finite strain:  slip = y(xi) - y(xi_last) on the master as it is now, across n; of an obstacle both in its frame
 //   segments:  g_j = n_j . 1/A_j int psi_j (x_s - y) dA,   along a master slip = |m_j| (Z_j - Z_j,last), e_j along
