@@ -103,11 +103,15 @@ std::string in_words(const Scene& scene, bool with_close_up) {
           ? "; nothing has flowed"
           : fmt::format("; a dot is an element that has flowed, by {:.3g} of plastic strain at most", *largest);
   return fmt::format(
-      "At the last step: {}, {}; {}{}.{}", counted(std::ssize(elements), springs ? "spring" : "element"),
+      "At the last step: {}, {}; {}{}.{}",
+      counted(std::ssize(elements), springs             ? "spring"
+                                    : scene.mesh.aslant ? "face"
+                                                        : "element"),
       counted(std::ssize(scene.contact), "contact point"), scale,
       flow + (springs ? "; a cross is a spring's anchor" : "") +
           (scene.mesh.tracks.empty() ? "" : ", the line the path of the point, the dotted one of the anchor") +
-          (scene.mesh.in_space ? "; seen along z" : ""),
+          (scene.mesh.in_space ? "; seen along z" : "") +
+          (scene.mesh.aslant ? "; seen aslant, from the side of the contact" : ""),
       scene.zooms && with_close_up ? " In the frame: the contact at true scale." : "");
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
@@ -106,6 +107,7 @@ bool is_spring(const Mesh& mesh, const std::vector<int>& nodes) {
 
 Mesh read_mesh(const json& picture) {
   Mesh mesh;
+  mesh.aslant = picture.contains("aslant");
   const json &points = array_at(picture, "points"), &moved = array_at(picture, "displacement");
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto point = seen(points[i]);
@@ -167,6 +169,9 @@ void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& 
     path.move(frame.x(at[nodes[0]].x), frame.y(at[nodes[0]].y));
     for (std::size_t i = 1; i < nodes.size(); ++i) path.line(frame.x(at[nodes[i]].x), frame.y(at[nodes[i]].y));
     if (nodes.size() > 2) path.close();
+    // Faces in space cover those behind them.
+    if (mesh.aslant && nodes.size() > 2)
+      drawing.path(std::exchange(path, {}), {mesh_lines ? "#5f6670" : colors[bin], colors[bin], 0.3, {}});
   }
   for (std::size_t i = 0; i < colors.size(); ++i)
     // Without mesh lines a stroke of the fill's own colour closes the hairlines between neighbours.
@@ -203,6 +208,7 @@ void draw_flowed(const Mesh& mesh, const std::vector<Point>& at, const Frame& fr
 }
 
 void draw_outlines(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, Drawing& drawing) {
+  if (mesh.aslant) return;                 // of faces that hide one another
   std::map<std::array<int, 3>, int> uses;  // body, lower node, higher node
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const auto nodes = outline(mesh.elements[e]);

@@ -23,6 +23,7 @@ struct Mesh {
   std::vector<double> plastic;             ///< equivalent plastic strain, one an element; empty where nothing flows
   std::vector<int> body;                   ///< one an element, or empty
   std::vector<Track> tracks;               ///< of points, where one of them turns
+  bool aslant = false;                     ///< its elements are faces of solid bodies, seen aslant
   bool in_space = false;                   ///< three coordinates, of which two are kept: seen along z
 };
 

@@ -6,6 +6,7 @@
 #include "studies/run/contact_points.hpp"
 #include "studies/run/element_fields.hpp"
 #include "studies/run/fields.hpp"
+#include "studies/run/view.hpp"
 
 namespace stickslip {
 namespace {
@@ -38,36 +39,45 @@ json obstacle_json(const Obstacle& obstacle, double time, bool finite, const Num
   return shape;
 }
 
-/// Nodes of all bodies, what moved and stresses them, and their elements by nodes.
-json bodies_json(const Problem& problem, const State<double>& state) {
+/// What a picture is made of: the view, and what is seen in it.
+struct Shown {
+  std::optional<View> view;
+  std::vector<Piece> pieces;
+
+  /// A place or a displacement as it is drawn.
+  json seen(const Eigen::Ref<const Vector<double>>& x) const {
+    if (view) return point_json(view->seen(x));
+    return point_json(x);
+  }
+};
+
+/// Nodes of all bodies, what moved and stresses them, and their elements by nodes; of solid bodies their faces.
+json bodies_json(const Problem& problem, const State<double>& state, const Shown& shown) {
   const auto& model = problem.model;
   json points = json::array(), displacement = json::array(), elements = json::array(), bodies = json::array(),
        mises = json::array(), names = json::array();
   const Matrix<double> u = nodal(model, state.displacement), stress = element_stress(problem, state);
   for (int node = 0; node < model.node_count; ++node) {
-    points.push_back(point_json(problem.slots.points.col(node)));
-    displacement.push_back(point_json(u.col(node)));
+    points.push_back(shown.seen(problem.slots.points.col(node)));
+    displacement.push_back(shown.seen(u.col(node)));
   }
-  int column = 0;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    names.push_back(model.scene.bodies[b].name);
-    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e, ++column) {
-      elements.push_back(detail::element_nodes(model.bodies[b], e));
-      bodies.push_back(b);
-      mises.push_back(von_mises(stress.col(column)));
-    }
+  for (const auto& body : model.scene.bodies) names.push_back(body.name);
+  for (const auto& piece : shown.pieces) {
+    elements.push_back(piece.nodes);
+    bodies.push_back(piece.body);
+    mises.push_back(von_mises(stress.col(piece.element)));
   }
   json out = {{"points", points}, {"displacement", displacement}, {"elements", elements},
               {"bodies", bodies}, {"body_names", names},          {"von_mises", mises}};
   if (model.effects.plasticity) {
     const Matrix<double> strain = element_plastic_strain(problem, state);
-    out["plastic_strain"] = std::vector<double>(strain.data(), strain.data() + strain.size());
+    for (const auto& piece : shown.pieces) out["plastic_strain"].push_back(strain(0, piece.element));
   }
   return out;
 }
 
 /// Contact points where they have moved to, with their states and tractions.
-json contact_json(const Problem& problem, const State<double>& state) {
+json contact_json(const Problem& problem, const State<double>& state, const Shown& shown) {
   const auto& model = problem.model;
   const Matrix<double> u = nodal(model, state.displacement);
   json contact = json::array();
@@ -75,9 +85,10 @@ json contact_json(const Problem& problem, const State<double>& state) {
     const auto& point = model.points[p];
     const int node = point.nodes[0];
     const auto t = state.contact.traction.segment(point.multiplier + 1, point.tangents);
+    const json place = shown.seen(problem.slots.points.col(node) + u.col(node));
     contact.push_back({{"name", model.scene.contacts[point.contact].name},
-                       {"x", problem.slots.points(0, node) + u(0, node)},
-                       {"y", problem.slots.points(1, node) + u(1, node)},
+                       {"x", place[0]},
+                       {"y", place[1]},
                        {"node", node},
                        {"state", state_name(point, state.contact.state[p])},
                        {"normal", state.contact.traction[point.multiplier]},
@@ -118,25 +129,28 @@ json picture_json(const CaseResult& result, int every) {
   const auto solved = solved_steps(result);  // where there is none, the picture is of the start
   const State<double>& state = solved.empty() ? result.trajectory.initial : solved.back().increment->state;
   const double time = solved.empty() ? 0 : solved.back().increment->time;
-  json picture = bodies_json(problem, state);
-  picture["contact"] = contact_json(problem, state);
+  const auto view = view_of(problem);
+  const Shown shown{view, pieces_of(problem, state, view)};
+  json picture = bodies_json(problem, state, shown);
+  picture["contact"] = contact_json(problem, state, shown);
+  if (view) picture["aslant"] = true;
   if (json paths = paths_json(result); !paths.empty()) picture["paths"] = std::move(paths);
   if (scene.finite_strain) picture["finite"] = true;  // it is drawn at true scale
   const auto obstacles_at = [&](double t) {
     json out = json::array();
     for (const auto& obstacle : scene.obstacles)
-      out.push_back(obstacle_json(obstacle, t, scene.finite_strain, problem.slots.numbers));
+      if (!view) out.push_back(obstacle_json(obstacle, t, scene.finite_strain, problem.slots.numbers));
     return out;
   };
   picture["obstacles"] = obstacles_at(time);
   if (every > 0)
     for (const auto& moment : kept_moments(result, every)) {
-      const json bodies = bodies_json(problem, moment.state);
+      const json bodies = bodies_json(problem, moment.state, shown);
       picture["frames"].push_back({{"step", moment.number},
                                    {"time", moment.time},
                                    {"displacement", bodies["displacement"]},
                                    {"von_mises", bodies["von_mises"]},
-                                   {"contact", contact_json(problem, moment.state)},
+                                   {"contact", contact_json(problem, moment.state, shown)},
                                    {"obstacles", obstacles_at(moment.time)}});
       if (bodies.contains("plastic_strain")) picture["frames"].back()["plastic_strain"] = bodies["plastic_strain"];
     }
