@@ -35,7 +35,9 @@ class Tables:
         for name, inner in node.get("properties", {}).items():
             self.shown.add(id(inner))
             yield name, inner, conditions.get(name, "")
-        for name, inner in (("NAME", node.get("additionalProperties")), ("[]", node.get("items"))):
+        patterns = node.get("patternProperties", {})
+        for name, inner in (*(("POINTER", inner) for inner in patterns.values()),
+                            ("NAME", node.get("additionalProperties")), ("[]", node.get("items"))):
             if isinstance(inner, dict):
                 yield name, inner, ""
         for alternative in node.get("anyOf", []):
@@ -65,18 +67,29 @@ class Tables:
         return node, definition
 
     def table(self, path):
-        lines = []  # neighbours that differ in their names alone share a line
+        lines = []  # neighbours of one object that differ in their names alone share a line
         at, definition = self.at(path)
         for key, node, required in self.rows(path, at, within=(definition,)):
             cells = [kind(node), standard(node, required), node["description"], example(key, node)]
-            object_ = key.rpartition("/")[0]
-            if lines and lines[-1][1][:3] == cells[:3] and lines[-1][0][0].rpartition("/")[0] == object_:
-                lines[-1][0].append(key)
+            object_, _, name = f"{path}/{key}".strip("/").rpartition("/")
+            if lines and lines[-1][0] == object_ and lines[-1][2][:3] == cells[:3]:
+                lines[-1][1].append(name)
             else:
-                lines.append(([key], cells))
-        head = "| key | type | default | meaning | example |\n|---|---|---|---|---|\n"
-        return head + "".join(f"| {', '.join(f'`{key}`' for key in keys)} | {' | '.join(cells)} |\n"
-                              for keys, cells in lines)
+                lines.append((object_, [name], cells))
+        head = "| key | where | type | default | meaning | example |\n|---|---|---|---|---|---|\n"
+        return head + "".join(f"| {', '.join(f'`{name}`' for name in names)} | {place(object_)} | {' | '.join(cells)} |\n"
+                              for object_, names, cells in lines)
+
+
+def place(object_):
+    """Which object holds a key, in the words of a table: one that several keys of a file lead to has a name of its own."""
+    if not object_:
+        return "top level"
+    first, _, rest = object_.partition("/")
+    if first != "$defs":
+        return f"`{object_}`"
+    name, _, inner = rest.partition("/")
+    return f"`{inner}` of a {name.upper()}" if inner else f"a {name.upper()}"
 
 
 def kind(node):
@@ -126,7 +139,7 @@ def example(key, node):
     if not values and node.get("type") == "boolean":
         values = [not node["default"]]
     name = key.rsplit("/", 1)[-1]
-    head = "" if name in ("NAME", "[]") else json.dumps(name) + ": "
+    head = "" if name in ("NAME", "POINTER", "[]") else json.dumps(name) + ": "
     return ", ".join(f"`{head}{shown(value)}`" for value in values)
 
 
