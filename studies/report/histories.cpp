@@ -1,4 +1,7 @@
 
+#include <algorithm>
+#include <cmath>
+
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
 
@@ -23,9 +26,26 @@ std::optional<std::size_t> hardest_step(const Cell& cell) {
   return hardest;
 }
 
-/// The iterations of one step of a cell. `turn`: which of them are marked.
+/// How many iterations the step has taken at each iterate of its history, so that the last is the number in the step
+/// table. Every solve begins with a guess, which is no iteration; a new solve begins where the augmentation changes.
+/// Iterations without an iterate, as a prediction or what other tries took, come before.
+std::vector<long> counted_iterations(const json& step) {
+  std::vector<long> counts;
+  const json* before = nullptr;
+  for (const auto& record : array_at(step, "history")) {
+    const bool starts = !before || at(record, "augmentation") != at(*before, "augmentation");
+    counts.push_back(counts.empty() ? 0 : counts.back() + (starts ? 0 : 1));
+    before = &record;
+  }
+  const long unlisted = std::lround(number_at(step, "newton")) - (counts.empty() ? 0 : counts.back());
+  for (long& count : counts) count += std::max(unlisted, 0L);
+  return counts;
+}
+
+/// The iterates of one step of a cell. `turn`: which of them are marked.
 void add_iterations(json& rows, const Cell& cell, std::size_t step, std::size_t turn) {
   const json& history = cell.record["steps"][step]["history"];
+  const auto counts = counted_iterations(cell.record["steps"][step]);
   // Long curves stay readable where they mark few points, and other ones than their neighbours.
   const std::size_t stride = std::max<std::size_t>(history.size() / 15, 1);
   for (std::size_t i = 0; i < history.size(); ++i) {
@@ -38,7 +58,8 @@ void add_iterations(json& rows, const Cell& cell, std::size_t step, std::size_t 
     r["of_cell"] = "yes";
     r["error"] = residual;
     r["step"] = step + 1;
-    r["iteration"] = r["order"] = i + 1;
+    r["iteration"] = counts[i];
+    r["order"] = i;
     r["unmarked"] = (i + turn) % stride != 0;
     r["changed"] = number_at(record, "changed");
     r["augmentation"] = number_at(record, "augmentation");
@@ -59,7 +80,8 @@ std::optional<Figure> convergence_histories(const Study& study) {
                     " that took most iterations (of a run that failed, the last). The residual is the largest "
                     "of equilibrium") +
                 (is_frictionless(study) ? " and contact" : ", normal and tangential contact") +
-                ", each relative to its own scale. Of a step that was tried several times, the last try";
+                ", each relative to its own scale. The last iteration has the number that the step table gives; the "
+                "first guess comes before the first";
   const auto shown = telling_cells(study, Furthest::left_out);
   add_first(series, study, shown);
   for (const auto& cell : study.cells) {
@@ -73,11 +95,12 @@ std::optional<Figure> convergence_histories(const Study& study) {
   if (figure.rows.empty()) return std::nullopt;
   const bool augmented =
       std::any_of(figure.rows.begin(), figure.rows.end(), [](const json& r) { return r["augmentation"] > 1; });
-  figure.text += augmented ? "; an augmented run starts anew with each augmentation, which is the sawtooth." : ".";
+  figure.text +=
+      augmented ? "; an augmented run begins each augmentation with a new guess, which is the sawtooth." : ".";
   show_zeros(figure.rows, "error");
   figure.series = series.list;
   figure.charts.push_back({.title = "",
-                           .x = {.field = "iteration", .title = "iteration within the step", .least_step = 1},
+                           .x = {.field = "iteration", .title = "Newton iterations of the step", .least_step = 1},
                            .y = {"shown", "relative residual", Spacing::logarithmic},
                            .tooltip = {{"series", "run"},
                                        {"iteration", "iteration"},

@@ -28,6 +28,7 @@ using recorded::without_scripts;
 using report::Against;
 using report::Of;
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -308,6 +309,27 @@ TEST_F(ReportCurves, ShowsTheHistoryOfTheHardestStep) {
   for (const auto& row : figure->rows) ++iterations[row["label"]];
   EXPECT_EQ(iterations.at("Penalty stiffness=1000"), 5);
   EXPECT_EQ(iterations.at("Penalty stiffness=1e5"), 3);
+}
+
+/// The last iterate stands at the number that the table of steps gives.
+TEST_F(ReportCurves, CountsTheIterationsOfAHistoryAsTheStepTableDoes) {
+  auto cells = three_methods();
+  const auto step = [](int newton, const std::vector<int>& augmentations) {
+    json step = {{"time", 1}, {"newton", newton}, {"history", json::array()}};
+    for (const int augmentation : augmentations)
+      step["history"].push_back({{"residual", 0.1}, {"augmentation", augmentation}});
+    return json::array({step});
+  };
+  cells[0]["steps"] = step(2, {0, 0, 0});           // a guess and two iterations
+  cells[1]["steps"] = step(3, {0, 0, 0});           // the first was a prediction
+  cells[2]["steps"] = step(3, {1, 1, 1, 2, 2, 3});  // three solves, of which the last had nothing to do
+  record(description(), cells);
+  std::map<std::string, std::vector<int>> counts;
+  const auto figure = report::convergence_histories(study());
+  for (const auto& row : figure->rows) counts[row["label"]].push_back(row["iteration"]);
+  EXPECT_THAT(counts.at("Penalty stiffness=1000"), ElementsAre(0, 1, 2));
+  EXPECT_THAT(counts.at("Penalty stiffness=1e5"), ElementsAre(1, 2, 3));
+  EXPECT_THAT(counts.at("Penalty stiffness=1e7"), ElementsAre(0, 1, 2, 2, 3, 3));
 }
 
 }  // namespace
