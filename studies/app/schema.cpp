@@ -69,7 +69,8 @@ Schema study_schema() {
   Schema definitions = Schema::parse(schema_texts::common);
   definitions["method"] = method_schema(OptionLists::refused);
   definitions["swept_method"] = method_schema(OptionLists::swept);
-  Schema schema = document("stickslip study", schema_texts::study, {"scene"}, definitions);
+  Schema schema = document("stickslip study", schema_texts::study, Schema::array(), definitions);
+  schema["oneOf"] = {{{"required", {"scene"}}}, {{"required", {"scenes"}}}};
   schema["properties"]["reference"]["items"]["properties"]["analytic"]["enum"] = analytic_names();
   return schema;
 }

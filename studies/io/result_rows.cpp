@@ -41,8 +41,9 @@ std::string row_fault(const json& row) {
   for (const char* name : {"id", "status"})
     if (!row.contains(name)) return "it has no " + in_quotes(name);
   if (has_checksum(row) && row["provenance"]["checksum"] != checksum_of(row)) return "its checksum is of another row";
-  static const std::array<std::pair<const char*, json::value_t>, 20> kinds{{
+  static const std::array<std::pair<const char*, json::value_t>, 21> kinds{{
       {"/id", json::value_t::string},
+      {"/scene", json::value_t::string},
       {"/status", json::value_t::string},
       {"/label", json::value_t::string},
       {"/message", json::value_t::string},
@@ -89,7 +90,7 @@ void check_description(const JsonNode& root) {
   if (!root.is_map("what a study recorded of itself")) return;
   for (const char* name : {"program", "command", "shard", "scene_title", "scene_hash", "explain"})
     if (const auto text = root.find(name)) text->text();
-  for (const char* name : {"mesh", "size"})
+  for (const char* name : {"mesh", "size", "scene_titles"})
     if (const auto group = root.find(name); group && !group->value().is_null()) group->is_map("numbers by name");
   const auto cells = root.find("cells");
   if (cells && !cells->value().is_array()) cells->must_be("a list of cells");
@@ -250,7 +251,7 @@ void check_records(const fs::path& directory) {
 }
 
 std::string variant_text(const json& row) {
-  std::string text;
+  std::string text = row.value("scene", "");
   const json vary = row.value("vary", json::object());
   for (const auto& [pointer, value] : vary.items())
     text += (text.empty() ? "" : ", ") + pointer + " = " + json_text(value);

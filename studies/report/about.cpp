@@ -30,10 +30,8 @@ std::string ratio_text(const Study& study) {
   if (study.ratio.empty())
     return "Back-solves could not be weighed (no seconds recorded), so work is factorisations alone.";
   std::string values;
-  for (const auto& [refine, ratio] : study.ratio)
-    values +=
-        fmt::format("{}{}", values.empty() ? "" : ", ",
-                    study.refined ? fmt::format("{} on mesh level {}", number(ratio, 2), refine) : number(ratio, 2));
+  for (const auto& [mesh, ratio] : study.ratio)
+    values += fmt::format("{}{}{}", values.empty() ? "" : ", ", number(ratio, 2), mesh.empty() ? "" : " for " + mesh);
   return fmt::format(
       "Work is factorisations plus r times back-solves, with r the measured cost of one back-solve over "
       "one factorisation, pooled over all runs: {}.",
@@ -77,7 +75,10 @@ std::string the_study(const Study& study) {
 /// Scene, methods and options that tell no run from another.
 std::string what_was_run(const Study& study) {
   std::string out;
-  if (const std::string scene = text_at(study.description, "scene_title"); !scene.empty())
+  const json& scenes = object_at(study.description, "scene_titles");
+  for (const auto& [file, title] : scenes.items())
+    out += "<p>Scene " + escape(file) + ": " + escape(plain(title)) + "</p>\n";
+  if (const std::string scene = text_at(study.description, "scene_title"); scenes.empty() && !scene.empty())
     out += "<p>Scene: " + escape(scene) + "</p>\n";
   std::string methods;
   for (const auto& family : study.families) methods += (methods.empty() ? "" : ", ") + family_name(family);

@@ -102,7 +102,7 @@ std::optional<double> Measure::error(const Cell& cell) const {
 
 double Measure::work(const Cell& cell) const { return work_of(cell, of); }
 
-double Measure::weight(const Cell& cell) const { return ratio_of(ratio, cell.refine); }
+double Measure::weight(const Cell& cell) const { return ratio_of(ratio, cell); }
 
 double Measure::median(const Cell& cell) const {
   return of == Of::responses ? cell.median_seconds : cell.median_sensitivity_seconds;

@@ -25,7 +25,7 @@ struct Measure {
   Of of = Of::responses;
   bool on_same_mesh = true;  ///< else against the closed form, a finer mesh or given values
   std::vector<Level> levels = {};
-  std::map<int, double> ratio = {};  ///< Study::ratio
+  std::map<std::string, double> ratio = {};  ///< Study::ratio
 
   std::string noun() const;  ///< "response"
   std::optional<double> error(const Cell& cell) const;

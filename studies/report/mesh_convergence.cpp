@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "studies/report/chart_parts.hpp"
@@ -19,10 +20,24 @@ namespace {
 constexpr double together = 0.1;  ///< curves that are nowhere further apart, relatively, are drawn as one
 const char* const worst_response = "worst response";
 
-/// One setting over the mesh levels.
+/// Whether a study without levels varies the mesh of a scene: then its meshes are a series of their own.
+bool varies_meshes(const Study& study) {
+  std::map<std::string, std::set<std::string>> meshes;  // by what else varies
+  for (const auto& cell : study.cells) meshes[cell.beside].insert(cell.mesh);
+  return !study.refined && std::any_of(meshes.begin(), meshes.end(), [](auto& of) { return of.second.size() > 1; });
+}
+
+/// Where a cell stands in the series of meshes: its level or, of meshes that are varied, its unknowns.
+int place_of(const Study& study, const Cell& cell) {
+  return study.refined ? cell.refine : static_cast<int>(number_at(at(cell.record, "size"), "displacements"));
+}
+
+const std::string& scene_of(const Study& study, const Cell& cell) { return study.refined ? cell.scene : cell.beside; }
+
+/// One setting over the meshes.
 struct Curve {
   std::string name, family;
-  std::map<int, double> errors;  ///< by level
+  std::map<int, double> errors;  ///< by place_of()
   double own = 0;                ///< worst enforcement error of its responses: what the method adds
 };
 
@@ -97,17 +112,17 @@ std::map<std::pair<std::string, std::string>, std::vector<Curve>> curves_of(cons
     const double own = worst(cell.enforcement, "response:").value_or(0);
     for (const auto& [quantity, error] :
          quantities(cell.discretization, {"response:", "sensitivity:"}, worst_response)) {
-      auto& curves = out[{cell.scene, quantity}];
+      auto& curves = out[{scene_of(study, cell), quantity}];
       auto curve = std::find_if(curves.begin(), curves.end(), [&](const Curve& c) { return c.name == in_words(cell); });
       if (curve == curves.end()) curve = curves.insert(curves.end(), {in_words(cell), cell.family, {}, 0});
-      curve->errors[cell.refine] = error;
+      curve->errors[place_of(study, cell)] = error;
       curve->own = std::max(curve->own, own);
     }
   }
   return out;
 }
 
-/// A curve a bundle, against the mesh level.
+/// A curve a bundle, against place_of().
 void add_bundles(const Study& study, SeriesList& series, json& rows) {
   for (auto& [choice, curves] : curves_of(study))
     for (const Bundle& bundle : bundled(std::move(curves))) {
@@ -141,10 +156,10 @@ void add_settings(const Study& study, SeriesList& series, json& rows) {
       r["panel"] = "seconds";
       r["series"] = r["line"] = name;
       r["of_cell"] = "yes";
-      r["scene"] = cell.scene;
+      r["scene"] = scene_of(study, cell);
       r["quantity"] = quantity;
       r["error"] = error;
-      r["level"] = r["order"] = cell.refine;
+      r["level"] = r["order"] = place_of(study, cell);
       r["seconds"] = cell.sensitivity_seconds;
       rows.push_back(r);
       series.add(name, cell.family);
@@ -155,11 +170,12 @@ void add_settings(const Study& study, SeriesList& series, json& rows) {
 }  // namespace
 
 std::optional<Figure> mesh_convergence(const Study& study) {
-  if (!study.refined) return std::nullopt;
+  const bool varied = varies_meshes(study);
+  if (!study.refined && !varied) return std::nullopt;
   Figure figure;
   SeriesList series(study);
   figure.id = "mesh";
-  figure.title = "The same error as the mesh is refined";
+  figure.title = varied ? "The same error on each of the meshes" : "The same error as the mesh is refined";
   const auto shown = telling_cells(study, Furthest::added);
   add_first(series, study, shown);
   add_bundles(study, series, figure.rows);
@@ -168,13 +184,18 @@ std::optional<Figure> mesh_convergence(const Study& study) {
   show_zeros(figure.rows, "error");
   figure.series = series.list;
   figure.text =
-      "Each level halves the elements. Against the level, runs that differ by less than 10 % on every mesh are one "
-      "curve. Where a loose setting's curve levels off, its own error has overtaken the mesh's. ";
+      std::string(varied ? "The meshes are those that the study varies." : "Each level halves the elements.") +
+      " In the first chart runs that differ by less than 10 % on every mesh are one curve. Where a loose "
+      "setting's curve levels off, its own error has overtaken the mesh's. ";
+  const std::string meshes = varied ? "displacement unknowns" : "mesh level";
   const Quantity error{"shown", "relative error against " + discretization_reference(study), Spacing::logarithmic};
-  figure.charts.push_back({.title = "against the mesh level",
-                           .x = {.field = "level", .title = "mesh level", .least_step = 1},
+  figure.charts.push_back({.title = varied ? "against unknowns" : "against the mesh level",
+                           .x = {.field = "level",
+                                 .title = meshes,
+                                 .spacing = varied ? Spacing::logarithmic : Spacing::linear,
+                                 .least_step = 1},
                            .y = error,
-                           .tooltip = {{"label", "runs"}, {"level", "mesh level"}, {"error", "error"}},
+                           .tooltip = {{"label", "runs"}, {"level", meshes}, {"error", "error"}},
                            .only = "level"});
   if (!distinct(figure.rows, "series", "seconds").empty()) {
     figure.text +=
@@ -184,13 +205,13 @@ std::optional<Figure> mesh_convergence(const Study& study) {
         {.title = "against seconds",
          .x = {"seconds", "seconds", Spacing::logarithmic},
          .y = error,
-         .tooltip = {{"label", "method"}, {"level", "mesh level"}, {"error", "error"}, {"seconds", "seconds"}},
+         .tooltip = {{"label", "method"}, {"level", meshes}, {"error", "error"}, {"seconds", "seconds"}},
          .only = "seconds"});
   }
   offer(figure, "Quantity", "quantity", worst_response);
   const auto main =
       std::find_if(study.cells.begin(), study.cells.end(), [&](auto& c) { return c.variant == study.main_variant; });
-  offer(figure, "Scene", "scene", main->scene);
+  offer(figure, "Scene", "scene", scene_of(study, *main));
   offer_cells(figure, shown);
   return figure;
 }

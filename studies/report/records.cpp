@@ -51,15 +51,58 @@ std::string short_name(const std::string& pointer, const std::set<std::string>& 
   return pointer;
 }
 
-/// Says in each cell what is varied, "friction = 0.3" of /contacts/sole/friction.
-void name_scenes(std::vector<Cell>& cells) {
+/// Appends a part to others, each after a comma.
+void append(std::string& text, const std::string& part) { text += (text.empty() ? "" : ", ") + part; }
+
+/// Pointers of linked lists whose values name a variant: the first list of texts or numbers that are all different, or
+/// else all lists.
+std::vector<std::string> telling_pointers(const json& lists) {
+  std::vector<std::string> all;
+  for (const auto& [pointer, values] : lists.items()) {
+    const std::set<json> different(values.begin(), values.end());
+    if (different.size() == values.size() &&
+        std::none_of(values.begin(), values.end(), [](const json& value) { return value.is_structured(); }))
+      return {pointer};
+    all.push_back(pointer);
+  }
+  return all;
+}
+
+/// Whether what a pointer names changes the mesh.
+bool makes_mesh(const std::string& pointer) { return pointer.find("/mesh/") != std::string::npos; }
+
+/// Says in each cell of which scene it is, of several, and what is varied: "friction = 0.3" of /contacts/sole/friction,
+/// "meshes (gmsh = fine.msh)" of linked lists.
+void name_scenes(std::vector<Cell>& cells, const json& description) {
   std::set<std::string> pointers;
   for (const auto& cell : cells)
     for (const auto& [pointer, unused] : object_at(cell.record, "vary").items()) pointers.insert(pointer);
-  for (auto& cell : cells)
-    for (const auto& [pointer, value] : object_at(cell.record, "vary").items())
-      cell.scene += fmt::format("{}{} = {}", cell.scene.empty() ? "" : ", ", short_name(pointer, pointers),
-                                value.is_number() ? exact_number(value) : plain(value));
+  const auto named = [&](const std::string& pointer, const json& value) {
+    return short_name(pointer, pointers) + " = " + (value.is_number() ? exact_number(value) : plain(value));
+  };
+  for (auto& cell : cells) {
+    const json& varied = object_at(cell.record, "vary");
+    cell.file = cell.scene = cell.beside = cell.mesh = text_at(cell.record, "scene");
+    std::set<std::string> together;
+    for (const auto& [name, lists] : linked_lists(description)) {
+      std::string values;
+      for (const auto& pointer : telling_pointers(lists))
+        if (varied.contains(pointer)) append(values, named(pointer, varied[pointer]));
+      bool of_mesh = false;
+      for (const auto& [pointer, unused] : lists.items()) {
+        together.insert(pointer);
+        of_mesh = of_mesh || makes_mesh(pointer);
+      }
+      if (values.empty()) continue;
+      append(cell.scene, name + " (" + values + ")");
+      append(of_mesh ? cell.mesh : cell.beside, name + " (" + values + ")");
+    }
+    for (const auto& [pointer, value] : varied.items()) {
+      if (together.count(pointer) > 0) continue;
+      append(cell.scene, named(pointer, value));
+      append(makes_mesh(pointer) ? cell.mesh : cell.beside, named(pointer, value));
+    }
+  }
 }
 
 Cell read_cell(json&& row) {
@@ -90,23 +133,23 @@ Cell read_cell(json&& row) {
 
 /// Cost of one back-solve over one factorisation on each mesh, pooled over its cells: the response's alone, since
 /// seconds.sensitivity does not tell the two apart. A mesh whose seconds are missing or zero gets none.
-std::map<int, double> measured_ratio(const std::vector<Cell>& cells) {
+std::map<std::string, double> measured_ratio(const std::vector<Cell>& cells) {
   struct Sums {
     double factor_seconds = 0, factors = 0, back_seconds = 0, backs = 0;
   };
-  std::map<int, Sums> sums;
+  std::map<std::string, Sums> sums;
   for (const auto& cell : cells) {
     const json& seconds = at(at(cell.record, "cost"), "seconds");
-    Sums& s = sums[cell.refine];
+    Sums& s = sums[cell.mesh];
     s.factor_seconds += number_at(seconds, "factorization");
     s.back_seconds += number_at(seconds, "backsolve");
     s.factors += cell.count("factorizations") - cell.count("sensitivity_factorizations");
     s.backs += cell.count("backsolves");
   }
-  std::map<int, double> ratio;
-  for (const auto& [refine, s] : sums)
+  std::map<std::string, double> ratio;
+  for (const auto& [mesh, s] : sums)
     if (s.factor_seconds > 0 && s.factors > 0 && s.back_seconds > 0 && s.backs > 0)
-      ratio[refine] = (s.back_seconds / s.backs) / (s.factor_seconds / s.factors);
+      ratio[mesh] = (s.back_seconds / s.backs) / (s.factor_seconds / s.factors);
   return ratio;
 }
 
@@ -204,18 +247,20 @@ Study read_study(const std::filesystem::path& directory) {
   for (const json& id : array_at(study.description, "cells"))
     study.unrecorded += id.is_string() && stored.rows.count(id) == 0;
 
-  name_scenes(study.cells);
-  name_scenes(study.peers);
+  name_scenes(study.cells, study.description);
+  name_scenes(study.peers, study.description);
   std::set<int> levels;
   for (const auto& cell : study.cells) levels.insert(cell.refine);
   study.refined = levels.size() > 1;
-  study.ratio = measured_ratio(study.cells);
   for (auto* cells : {&study.cells, &study.peers})
     for (auto& cell : *cells) {
       cell.variant = cell.scene;
-      if (study.refined) cell.variant += fmt::format("{}mesh level {}", cell.scene.empty() ? "" : ", ", cell.refine);
+      if (!study.refined) continue;
+      append(cell.variant, fmt::format("mesh level {}", cell.refine));
+      append(cell.mesh, fmt::format("mesh level {}", cell.refine));
     }
-  for (auto& cell : study.cells) measure_work(cell, ratio_of(study.ratio, cell.refine));
+  study.ratio = measured_ratio(study.cells);
+  for (auto& cell : study.cells) measure_work(cell, ratio_of(study.ratio, cell));
   study.families = distinct(study.cells, [](const Cell& c) { return c.family; });
   complete_knobs(study.cells);
   name_runs(study);
@@ -248,12 +293,27 @@ Study read_run(const std::filesystem::path& directory) {
   name_runs(study);
   study.variants = {""};
   study.ratio = measured_ratio(study.cells);
-  measure_work(study.cells.front(), ratio_of(study.ratio, study.cells.front().refine));
+  measure_work(study.cells.front(), ratio_of(study.ratio, study.cells.front()));
   return study;
 }
 
-double ratio_of(const std::map<int, double>& ratio, int refine) {
-  const auto found = ratio.find(refine);
+std::vector<std::pair<std::string, json>> linked_lists(const json& description) {
+  std::vector<std::pair<std::string, json>> linked;
+  for (const auto& [name, lists] : object_at(description, "vary").items())
+    if (lists.is_object()) linked.emplace_back(name, lists);
+  return linked;
+}
+
+Study of_scene(const Study& all, const std::string& file) {
+  Study study = all;
+  std::erase_if(study.cells, [&](const Cell& cell) { return cell.file != file; });
+  study.variants = distinct(study.cells, [](const Cell& c) { return c.variant; });
+  study.main_variant = main_variant_of(study);
+  return study;
+}
+
+double ratio_of(const std::map<std::string, double>& ratio, const Cell& cell) {
+  const auto found = ratio.find(cell.mesh);
   return found == ratio.end() ? 0 : found->second;
 }
 

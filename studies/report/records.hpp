@@ -28,9 +28,12 @@ struct Cell {
   std::string family;     ///< key of the method: penalty, uzawa_al, monolithic_al, ...
   std::string status;
   bool converged = false;
-  std::string scene;    ///< the values of `vary`, "friction = 0.3"; empty where nothing is varied
+  std::string file;     ///< of the scene, of a study of several; else empty
+  std::string scene;    ///< file, and values of `vary`: "friction = 0.3"; empty where there is neither
   int refine = 0;       ///< mesh level
   std::string variant;  ///< scene and, where there are several, mesh level
+  std::string beside;   ///< scene without what makes its mesh
+  std::string mesh;     ///< what of the variant makes its mesh: file, values of `vary` and mesh level
   std::vector<Knob> knobs;
   std::map<std::string, std::string> bare = {};  ///< option and value, of those whose value stands alone in the label
   std::map<std::string, double> enforcement;     ///< against the same mesh; keys response:* sensitivity:* field:*
@@ -54,7 +57,7 @@ struct Study {
   std::string main_variant;           ///< the one shown first: most cells converged, of equals the last
   std::vector<std::string> shared;    ///< "METHOD OPTION=VALUE" that tells no two runs of the method apart
   std::vector<std::string> understood;  ///< "METHOD OPTION=VALUE" of runs whose label does not name the option
-  std::map<int, double> ratio;          ///< cost of one back-solve over one factorisation, by refinement; measured
+  std::map<std::string, double> ratio;  ///< cost of one back-solve over one factorisation, by Cell::mesh; measured
   bool refined = false;                 ///< more than one mesh level
   std::string faults;                   ///< of results.jsonl, in words
   std::size_t unrecorded = 0;           ///< cells of the study without a row
@@ -83,8 +86,14 @@ const Knob* find_knob(const Cell& cell, const std::string& name);
 /// study has several of them or names none, "the references".
 std::string discretization_reference(const Study& study);
 
-/// Study::ratio of a mesh level; 0 where it was not measured.
-double ratio_of(const std::map<int, double>& ratio, int refine);
+/// Study::ratio of the mesh of a cell; 0 where it was not measured.
+double ratio_of(const std::map<std::string, double>& ratio, const Cell& cell);
+
+/// The lists that a study varies together, by name, from its description.
+std::vector<std::pair<std::string, nlohmann::json>> linked_lists(const nlohmann::json& description);
+
+/// What a study has of one of its scenes.
+Study of_scene(const Study& all, const std::string& file);
 
 /// Whether no contact has friction: the ledgers say so or, in records without them, all that touches is "closed", and
 /// no measure speaks of slip.

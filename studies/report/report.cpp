@@ -25,6 +25,7 @@
 #include "studies/report/records.hpp"
 #include "studies/report/run_page.hpp"
 #include "studies/report/sample.hpp"
+#include "studies/report/scene_winners.hpp"
 #include "studies/report/tables.hpp"
 #include "studies/report/verdict.hpp"
 
@@ -104,6 +105,17 @@ std::optional<Figure> first_chart(const Study& study, std::size_t rows_of_verdic
   return figure;
 }
 
+/// "Varied together as meshes, 2 variants: /a, /b." of linked lists.
+std::string together_in_words(const std::string& name, const json& lists) {
+  std::string pointers;
+  std::size_t values = 0;
+  for (const auto& [pointer, list] : lists.items()) {
+    pointers += (pointers.empty() ? "" : ", ") + pointer;
+    values = list.size();
+  }
+  return fmt::format("Varied together as {}, {} variants: {}.", name, values, pointers);
+}
+
 /// What a reader sees first: who is the cheapest and why, the scene, a chart of what `study` shows of `all`.
 std::string first_screen(const Study& all, const Study& study, Figures& figures) {
   auto overview = draw_overview(study.picture);
@@ -115,8 +127,12 @@ std::string first_screen(const Study& all, const Study& study, Figures& figures)
   const std::string scene = figures.show(std::move(overview)), chart = figures.show(first_chart(study, best.rows));
   const std::string sights = scene.empty() && chart.empty() ? "" : "<div class=\"first\">" + scene + chart + "</div>\n";
   const std::string failed = failures(all);
-  return (failed.empty() ? "" : "<p class=\"reason\">" + escape_sentence(failed) + "</p>\n") + best.reason + sights +
-         best.table;
+  std::string linked;
+  for (const auto& [name, lists] : linked_lists(all.description))
+    linked += escape(together_in_words(name, lists)) + " ";
+  return (failed.empty() ? "" : "<p class=\"reason\">" + escape_sentence(failed) + "</p>\n") +
+         (linked.empty() ? "" : "<p class=\"reason\">" + linked + "</p>\n") + cheapest_by_scene(all) + best.reason +
+         sights + best.table;
 }
 
 std::string of_errors(const Study& all, const Study& study, Of of, Figures& figures) {

@@ -14,18 +14,32 @@ namespace {
 
 using nlohmann::json;
 
-/// Calls f with one value of each sweep in turn, the last sweep's fastest.
+/// Calls f with a place in each of lists of these sizes, the last list's fastest.
 template <class F>
-void for_each_combination(const std::vector<Knob>& sweeps, F&& f) {
-  std::vector<const PlacedValue*> chosen(sweeps.size());
+void for_each_combination(const std::vector<std::size_t>& sizes, F&& f) {
+  std::vector<std::size_t> chosen(sizes.size());
   auto choose = [&](auto&& self, std::size_t i) -> void {
-    if (i == sweeps.size()) return f(chosen);
-    for (const PlacedValue& value : sweeps[i].values) {
-      chosen[i] = &value;
-      self(self, i + 1);
-    }
+    if (i == sizes.size()) return f(chosen);
+    for (chosen[i] = 0; chosen[i] < sizes[i]; ++chosen[i]) self(self, i + 1);
   };
   choose(choose, 0);
+}
+
+std::vector<std::size_t> sizes_of(const std::vector<Knob>& sweeps) {
+  std::vector<std::size_t> sizes;
+  for (const Knob& sweep : sweeps) sizes.push_back(sweep.values.size());
+  return sizes;
+}
+
+std::vector<std::size_t> sizes_of(const std::vector<Variation>& variations) {
+  std::vector<std::size_t> sizes;
+  for (const Variation& variation : variations) sizes.push_back(variation.size());
+  return sizes;
+}
+
+/// Gives a scene the values that a variation has in this place.
+void set_varied(JsonDocument& scene, const Variation& variation, std::size_t place) {
+  for (const Knob& knob : variation.knobs) scene.set(knob.pointer, knob.values[place].value, knob.values[place].place);
 }
 
 /// "/newton/tolerance" as "newton.tolerance".
@@ -36,14 +50,14 @@ std::string option_name(const std::string& pointer) {
 }
 
 /// Puts a method with its options into the cell. The faults that follow are left to complete().
-void set_method(CellInput& cell, const MethodSweep& method, const std::vector<const PlacedValue*>& chosen) {
+void set_method(CellInput& cell, const MethodSweep& method, const std::vector<std::size_t>& chosen) {
   const std::string base = child_pointer("/method", method.method);
   cell.document.set("/method", {{method.method, json::object()}}, method.place);
   cell.label = method.method;
   cell.knobs = json::object();
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const Knob& option = method.options[i];
-    const auto& [value, place] = *chosen[i];
+    const auto& [value, place] = option.values[chosen[i]];
     // an option within an object, as /scale/absolute, needs the object
     for (auto slash = option.pointer.find('/', 1); slash != std::string::npos;
          slash = option.pointer.find('/', slash + 1))
@@ -56,11 +70,39 @@ void set_method(CellInput& cell, const MethodSweep& method, const std::vector<co
   }
 }
 
+/// Calls f with a cell of each scene, mesh level and combination of what is varied; it has no method yet.
+template <class F>
+void for_each_variant(const Study& study, F&& f) {
+  for (const StudyScene& scene : study.scenes)
+    for (const auto& [level, level_place] : study.refine)
+      for_each_combination(sizes_of(study.vary), [&](const std::vector<std::size_t>& places) {
+        CellInput variant;
+        variant.document = scene.document;
+        variant.scene = scene.file;
+        variant.refine = level.template get<int>();
+        for (std::size_t i = 0; i < places.size(); ++i) {
+          set_varied(variant.document, study.vary[i], places[i]);
+          for (const Knob& knob : study.vary[i].knobs) variant.vary[knob.pointer] = knob.values[places[i]].value;
+        }
+        refine_meshes(variant.document, variant.refine, level_place);
+        f(variant);
+      });
+}
+
+/// A cell of the finest mesh of each scene, which a finer one may be too large for.
+std::vector<CellInput> finest_of_scenes(const std::vector<CellInput>& cells) {
+  std::map<std::string, CellInput> finest;
+  for (const CellInput& cell : cells)
+    if (const auto found = finest.find(cell.scene); found == finest.end() || found->second.refine < cell.refine)
+      finest[cell.scene] = cell;
+  std::vector<CellInput> out;
+  for (auto& [scene, cell] : finest) out.push_back(std::move(cell));
+  return out;
+}
+
 /// Puts the method of a reference into the cell, and its mesh level.
 void set_reference(CellInput& cell, const Reference& reference) {
-  std::vector<const PlacedValue*> chosen;
-  for (const Knob& option : reference.method.options) chosen.push_back(&option.values.front());
-  set_method(cell, reference.method, chosen);
+  set_method(cell, reference.method, std::vector<std::size_t>(reference.method.options.size(), 0));
   refine_meshes(cell.document, reference.refine, reference.method.place);
 }
 
@@ -81,46 +123,49 @@ bool complete(CellInput& cell, const std::string& method, const std::string& pro
 /// Each value of each option by itself.
 void check_option_values(const MethodSweep& method, Diagnostics& diagnostics) {
   for (const Knob& option : method.options)
-    for (const PlacedValue& value : option.values) {
+    for (std::size_t i = 0; i < option.values.size(); ++i) {
       CellInput cell;
       cell.document = JsonDocument::of(json::object(), method.place.source);
-      set_method(cell, {method.method, method.place, {option}}, {&value});
+      set_method(cell, {method.method, method.place, {option}}, {i});
       check_option_values(*JsonNode(cell.document, diagnostics).find("method")->find(method.method), method.method,
                           diagnostics);
     }
 }
 
-/// Whether the solution of another program is one of the variant of a cell: what it leaves open, the study does not
-/// vary.
-bool is_of_variant(const PeerSolution& peer, const CellInput& cell, const Study& study) {
-  for (const Knob& knob : study.vary) {
-    const auto given = peer.vary.find(knob.pointer);
-    if (given == peer.vary.end() ? knob.values.size() > 1 : given->second != cell.vary.at(knob.pointer)) return false;
-  }
-  return peer.refine ? *peer.refine == cell.refine : study.refine.size() == 1;
+/// Whether a cell has all that the solution of another program says of its variant.
+bool is_of_variant(const PeerSolution& peer, const CellInput& cell) {
+  const auto has = [&](const auto& given) {
+    const auto own = cell.vary.find(given.first);
+    return own != cell.vary.end() && own->second == given.second;
+  };
+  return std::ranges::all_of(peer.vary, has) && peer.scene.value_or(cell.scene) == cell.scene &&
+         peer.refine.value_or(cell.refine) == cell.refine;
 }
 
 /// Puts the solutions of other programs behind the cells of their variants.
 void add_solutions(const Study& study, const std::string& program_version, std::vector<CellInput>& cells,
                    Diagnostics& diagnostics) {
   for (const auto& peer : study.solutions) {
-    const auto known = [&](const auto& varied) {
-      return std::ranges::count(study.vary, varied.first, &Knob::pointer) > 0;
-    };
-    const auto last = std::find_if(cells.rbegin(), cells.rend(),
-                                   [&](const CellInput& cell) { return is_of_variant(*peer, cell, study); });
-    if (last == cells.rend() || !std::ranges::all_of(peer->vary, known)) {
+    std::set<std::string> variants;
+    auto end = cells.end();  // of the variant's cells
+    for (auto cell = cells.begin(); cell != cells.end(); ++cell)
+      if (is_of_variant(*peer, *cell)) {
+        variants.insert(variant_key(*cell));
+        end = cell + 1;
+      }
+    if (variants.size() != 1) {
       diagnostics.error({peer->place, peer->place.pointer,
-                         R"(is of no one variant; "vary" and "refine" must say of which, in values of the study's)"});
+                         R"(is of no one variant; "scene", "vary" and "refine" must say of which, in values of the )"
+                         R"(study's)"});
       continue;
     }
-    CellInput cell = *last;
+    CellInput cell = *(end - 1);
     cell.peer = peer;
     cell.label = peer->name;
     cell.knobs = json::object();
     cell.canonical += "\n" + peer->name + "\n" + peer->solution.dump();
     cell.id = cell_id(cell.canonical, program_version);
-    cells.insert(last.base(), std::move(cell));
+    cells.insert(end, std::move(cell));
   }
 }
 
@@ -133,6 +178,10 @@ bool is_of_method(const Diagnostic& fault, const JsonDocument& scene) {
 }
 
 }  // namespace
+
+std::string variant_key(const CellInput& cell) {
+  return json{{"scene", cell.scene}, {"vary", cell.vary}, {"refine", cell.refine}}.dump();
+}
 
 std::string cell_id(const std::string& canonical, const std::string& program_version) {
   return fingerprint(canonical + "\n" + program_version);
@@ -189,13 +238,16 @@ void check_parts(const Study& study, Diagnostics& all_faults, MeshFiles& mesh_fi
     for (const Diagnostic& fault : own.errors())
       if (!is_of_method(fault, scene)) diagnostics.error(fault);
   };
-  if (study.scene.root().is_object()) check_scene(study.scene);
-  for (const Knob& knob : study.vary)
-    for (const PlacedValue& value : study.scene.root().is_object() ? knob.values : std::vector<PlacedValue>{}) {
-      JsonDocument scene = study.scene;
-      scene.set(knob.pointer, value.value, value.place);
-      check_scene(scene);
-    }
+  for (const StudyScene& given : study.scenes) {
+    check_scene(given.document);
+    const auto has = [&](const Knob& knob) { return value_at(given.document.root(), knob.pointer) != nullptr; };
+    for (const Variation& variation : study.vary)
+      for (std::size_t i = 0; std::ranges::all_of(variation.knobs, has) && i < variation.size(); ++i) {
+        JsonDocument scene = given.document;
+        set_varied(scene, variation, i);
+        check_scene(scene);
+      }
+  }
   for (const Diagnostic& fault : diagnostics.errors()) all_faults.error(in_study(study, fault));
 }
 
@@ -205,37 +257,23 @@ std::vector<CellInput> expand(const Study& study, const std::string& program_ver
   std::vector<CellInput> cells;
   std::set<std::string> ids;
   std::size_t again = 0;
-  for (const auto& [level, level_place] : study.refine) {
-    CellInput refined;
-    refined.document = study.scene;
-    refined.refine = level.get<int>();
-    refine_meshes(refined.document, refined.refine, level_place);
-    for_each_combination(study.vary, [&](const std::vector<const PlacedValue*>& varied) {
-      CellInput scene = refined;
-      for (std::size_t i = 0; i < varied.size(); ++i) {
-        scene.document.set(study.vary[i].pointer, varied[i]->value, varied[i]->place);
-        scene.vary[study.vary[i].pointer] = varied[i]->value;
-      }
-      for (const MethodSweep& method : study.methods)
-        for_each_combination(method.options, [&](const std::vector<const PlacedValue*>& chosen) {
-          CellInput cell = scene;
-          set_method(cell, method, chosen);
-          if (!complete(cell, method.method, program_version, diagnostics, mesh_files)) return;
-          if (ids.insert(cell.id).second)
-            cells.push_back(std::move(cell));
-          else
-            ++again;
-        });
-    });
-  }
+  for_each_variant(study, [&](const CellInput& variant) {
+    for (const MethodSweep& method : study.methods)
+      for_each_combination(sizes_of(method.options), [&](const std::vector<std::size_t>& chosen) {
+        CellInput cell = variant;
+        set_method(cell, method, chosen);
+        if (!complete(cell, method.method, program_version, diagnostics, mesh_files)) return;
+        if (ids.insert(cell.id).second)
+          cells.push_back(std::move(cell));
+        else
+          ++again;
+      });
+  });
   if (!diagnostics.has_errors()) add_solutions(study, program_version, cells, diagnostics);
   // a reference with faulty options would be found only when it is run
-  if (!cells.empty())
-    for (const Reference& reference : study.references)
-      if (reference.kind == Reference::Kind::method || reference.kind == Reference::Kind::overkill) {
-        // of the finest mesh, which a finer one may be too large for
-        CellInput cell = *std::max_element(cells.begin(), cells.end(),
-                                           [](const auto& a, const auto& b) { return a.refine < b.refine; });
+  for (const Reference& reference : study.references)
+    if (reference.kind == Reference::Kind::method || reference.kind == Reference::Kind::overkill)
+      for (CellInput& cell : finest_of_scenes(cells)) {
         set_reference(cell, reference);
         complete(cell, reference.method.method, program_version, diagnostics, mesh_files);
       }

@@ -18,6 +18,7 @@ struct CellInput {
   Method method;
   std::string label;                           ///< "penalty stiffness=100 newton.tolerance=1e-08"
   nlohmann::json knobs;                        ///< swept options: {"stiffness": 100, "newton.tolerance": 1e-08}
+  std::string scene;                           ///< StudyScene::file
   std::map<std::string, nlohmann::json> vary;  ///< by pointer
   int refine = 0;
   /// Then nothing is run, and the method is that of another cell; null: a run.
@@ -26,7 +27,10 @@ struct CellInput {
   std::string id;         ///< cell_id() of it
 };
 
-/// The cells, all valid: mesh level by level, then each combination of `vary`, then the methods with each combination
+/// Cells with the same key share a variant of a scene: its problem, condensation and references.
+std::string variant_key(const CellInput& cell);
+
+/// The cells, all valid: scene by scene, in it mesh level by level, then each combination of `vary`, then the methods with each combination
 /// of their options, the last varying fastest. Inputs that are the same come once, and a note says how many
 /// were left out. Empty where there is a fault.
 std::vector<CellInput> expand(const Study&, const std::string& program_version, Diagnostics&, MeshFiles&);

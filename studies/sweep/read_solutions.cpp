@@ -50,7 +50,7 @@ std::vector<std::shared_ptr<const PeerSolution>> read_solutions(const JsonNode& 
     return solutions;
   }
   for (const JsonNode& node : list.elements()) {
-    if (!node.is_object({{"name", "file"}, {"vary", "refine"}})) continue;
+    if (!node.is_object({{"name", "file"}, {"scene", "vary", "refine"}})) continue;
     PeerSolution one;
     one.place = node.place();
     const auto name = read_name(*node.find("name"), names);
@@ -62,6 +62,7 @@ std::vector<std::shared_ptr<const PeerSolution>> read_solutions(const JsonNode& 
     one.file = beside.value().get<std::string>();
     if (const auto vary = node.find("vary"); vary && vary->is_map("values by JSON pointer of the scene"))
       for (const auto& [pointer, value] : vary->members()) one.vary[pointer] = value.value();
+    if (const auto scene = node.find("scene")) one.scene = scene->text();
     if (const auto refine = node.find("refine")) one.refine = refine->count(0, finest_level);
     solutions.push_back(std::make_shared<const PeerSolution>(std::move(one)));
   }

@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <set>
 
 #include "studies/io/json_pointer.hpp"
+#include "studies/io/wording.hpp"
 #include "studies/sweep/study_reading.hpp"
 
 namespace stickslip {
@@ -8,8 +11,10 @@ namespace {
 
 using nlohmann::json;
 
-/// The values of a list, each once.
-std::vector<PlacedValue> values_of(const JsonNode& list) {
+enum class Repeats { refused, allowed };
+
+/// The values of a list.
+std::vector<PlacedValue> values_of(const JsonNode& list, Repeats repeats = Repeats::refused) {
   std::vector<PlacedValue> values;
   if (!list.value().is_array() || list.value().empty()) {
     list.must_be("a list of values");
@@ -17,7 +22,7 @@ std::vector<PlacedValue> values_of(const JsonNode& list) {
   }
   std::set<json> before;
   for (const JsonNode& element : list.elements()) {
-    if (!before.insert(element.value()).second)
+    if (!before.insert(element.value()).second && repeats == Repeats::refused)
       element.error("is " + shown(element.value()) + ", which the list has already");
     else
       values.push_back({element.value(), element.place()});
@@ -49,6 +54,45 @@ std::string overlapping(const std::set<std::string>& pointers, const std::string
   return inside != pointers.end() && inside->starts_with(pointer + "/") ? *inside : "";
 }
 
+/// Whether a pointer names what a study may vary, and is not among the `known`, to which it is added; else that is
+/// reported.
+bool can_be_varied(const std::string& pointer, const JsonNode& list, const json& scene, std::set<std::string>& known) {
+  std::string fault;
+  if (pointer == "/method" || pointer.rfind("/method/", 0) == 0)
+    fault = R"(an option of a method is swept as a list in "methods")";
+  else if (!scene.is_null())
+    fault = pointer_fault(scene, pointer);
+  if (fault.empty() && !scene.is_null() && value_at(scene, pointer)->is_object())
+    fault = "names an object; must name a number, a text or an array";
+  if (const std::string other = overlapping(known, pointer); fault.empty() && !other.empty())
+    fault = "overlaps " + other + ", which is varied too: one would overwrite the other";
+  if (!fault.empty()) list.error_at_key(fault);
+  return fault.empty() && known.insert(pointer).second;
+}
+
+/// Lists whose values go together; none where there is a fault.
+std::optional<Variation> read_linked(const std::string& name, const JsonNode& node, const json& scene,
+                                     std::set<std::string>& known) {
+  Variation linked{name, {}};
+  const auto lists = node.members();
+  if (lists.size() < 2) {
+    node.must_be("two or more lists of values by JSON pointer of the scene, whose values go together");
+    return std::nullopt;
+  }
+  for (const auto& [pointer, list] : lists) {
+    if (!can_be_varied(pointer, list, scene, known)) return std::nullopt;
+    Knob knob{pointer, values_of(list, Repeats::allowed)};
+    if (knob.values.empty()) return std::nullopt;
+    if (!linked.knobs.empty() && knob.values.size() != linked.size()) {
+      list.error(fmt::format("has {}, but {} has {}; lists that are linked must have as many values",
+                             counted(std::ssize(knob.values), "value"), linked.knobs.front().pointer, linked.size()));
+      return std::nullopt;
+    }
+    linked.knobs.push_back(std::move(knob));
+  }
+  return linked;
+}
+
 }  // namespace
 
 std::optional<MethodSweep> read_method_sweep(const JsonNode& node, OptionLists lists) {
@@ -78,23 +122,17 @@ std::vector<MethodSweep> read_methods(const JsonNode& study, const std::optional
   return methods;
 }
 
-std::vector<Knob> read_vary(const JsonNode& node, const json& scene) {
-  std::vector<Knob> knobs;
+std::vector<Variation> read_vary(const JsonNode& node, const json& scene) {
+  std::vector<Variation> variations;
   std::set<std::string> known;
-  if (!node.is_map("lists of values by JSON pointer of the scene")) return knobs;
-  for (const auto& [pointer, list] : node.members()) {
-    if (pointer == "/method" || pointer.rfind("/method/", 0) == 0)
-      list.error_at_key(R"(an option of a method is swept as a list in "methods")");
-    else if (const std::string fault = scene.is_null() ? "" : pointer_fault(scene, pointer); !fault.empty())
-      list.error_at_key(fault);
-    else if (!scene.is_null() && value_at(scene, pointer)->is_object())
-      list.error_at_key("names an object; must name a number, a text or an array");
-    else if (const std::string other = overlapping(known, pointer); !other.empty())
-      list.error_at_key("overlaps " + other + ", which is varied too: one would overwrite the other");
-    else if (known.insert(pointer).second)
-      knobs.push_back({pointer, values_of(list)});
-  }
-  return knobs;
+  if (!node.is_map("lists of values by JSON pointer of the scene")) return variations;
+  for (const auto& [key, entry] : node.members())
+    if (entry.value().is_object() && !key.starts_with('/')) {
+      if (auto linked = read_linked(key, entry, scene, known)) variations.push_back(*std::move(linked));
+    } else if (can_be_varied(key, entry, scene, known)) {
+      variations.push_back({"", {{key, values_of(entry)}}});
+    }
+  return variations;
 }
 
 std::vector<PlacedValue> read_levels(const JsonNode& list) {

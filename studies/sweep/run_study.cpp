@@ -119,6 +119,8 @@ json description(const Plan& plan, const StudyArguments& arguments, MeshFiles& m
   out["cells"] = plan.ids;
   out["shard"] = plan.shard.text();
   out["scene_title"] = problem->model.scene.title;
+  for (const StudyScene& scene : plan.study.scenes)
+    if (!scene.file.empty()) out["scene_titles"][scene.file] = scene.document.root().value("title", "");
   out["scene_hash"] = fingerprint(canonical_text(input));
   out["explain"] = explain(input, *problem);
   int elements = 0;
@@ -172,7 +174,7 @@ struct Listener {
 
 /// A cell in words: its label and variant.
 std::string name_of_cell(const CellInput& cell) {
-  const std::string variant = variant_text({{"vary", cell.vary}, {"refine", cell.refine}});
+  const std::string variant = variant_text({{"scene", cell.scene}, {"vary", cell.vary}, {"refine", cell.refine}});
   return cell.label + (variant.empty() ? "" : ", " + variant);
 }
 

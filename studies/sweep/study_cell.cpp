@@ -78,6 +78,7 @@ json brief(const json& steps) {
 json head_of(const CellInput& cell, bool current_geometry) {
   json head = {{"id", cell.id},     {"label", cell.label},   {"knobs", cell.knobs},
                {"vary", cell.vary}, {"refine", cell.refine}, {"scene_hash", fingerprint(cell.canonical)}};
+  if (!cell.scene.empty()) head["scene"] = cell.scene;
   if (cell.peer) {
     head["peer"] = {{"name", cell.peer->name}, {"file", cell.peer->file}};
     return head;
@@ -97,8 +98,6 @@ json certificate_of_run(const CaseResult& result, const json& scene, const json&
 }
 
 }  // namespace
-
-std::string variant_key(const CellInput& cell) { return json{{"vary", cell.vary}, {"refine", cell.refine}}.dump(); }
 
 std::string program_version() { return std::string(version::number) + "+" + std::string(version::git); }
 

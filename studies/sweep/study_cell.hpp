@@ -14,9 +14,6 @@
 
 namespace stickslip {
 
-/// Cells with the same key share a variant of the scene: its problem, condensation and references.
-std::string variant_key(const CellInput& cell);
-
 /// What a cell's id says of the program: a build of another commit does not take its results for its own.
 std::string program_version();
 

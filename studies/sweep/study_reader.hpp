@@ -1,4 +1,4 @@
-/// Study files (JSON): one scene, methods with the options to sweep, numbers to vary, mesh levels. The format is
+/// Study files (JSON): scenes, methods with the options to sweep, numbers to vary, mesh levels. The format is
 /// described in docs/study.md.
 #pragma once
 
@@ -25,6 +25,13 @@ struct Knob {
   std::vector<PlacedValue> values;
 };
 
+/// What a study varies: a list, or linked lists, of which the i-th values of all go together.
+struct Variation {
+  std::string name;         ///< of linked lists; "" of a list by itself
+  std::vector<Knob> knobs;  ///< at least one; all with as many values
+  std::size_t size() const { return knobs.front().values.size(); }
+};
+
 struct MethodSweep {
   std::string method;
   Place place;
@@ -39,22 +46,28 @@ struct Reference {
   int refine = 0;        ///< overkill: levels finer than the cell
 };
 
-/// What another program found for the scene, or for one of its variants (docs/verify.md).
+/// What another program found for a scene, or for one of its variants (docs/verify.md).
 struct PeerSolution {
   std::string name;
   std::string file;  ///< as given
   nlohmann::json solution;
+  std::optional<std::string> scene;            ///< file of its scene
   std::map<std::string, nlohmann::json> vary;  ///< of its variant, by pointer
   std::optional<int> refine;                   ///< of its variant
   Place place;
 };
 
+struct StudyScene {
+  std::string file;       ///< as a study of several names it; "" of one alone
+  JsonDocument document;  ///< as the file gives it
+};
+
 struct Study {
   std::string title;
-  JsonDocument scene;                ///< as the file gives it
+  std::vector<StudyScene> scenes;    ///< at least one; in a study at fault those that can be read
   JsonDocument document;             ///< the study itself
   std::vector<MethodSweep> methods;  ///< at least one
-  std::vector<Knob> vary;
+  std::vector<Variation> vary;
   std::vector<PlacedValue> refine;  ///< levels, at least one
   std::vector<Reference> references;
   std::vector<std::shared_ptr<const PeerSolution>> solutions;
@@ -63,7 +76,7 @@ struct Study {
   int budget_copies = 0;            ///< perturbed copies of each run of the error budget; 0: there is none
 };
 
-/// Reads a study, and its scene, which is looked for beside it. None where there is a fault in either.
+/// Reads a study, and its scenes, which are looked for beside it. None where there is a fault in any of them.
 std::optional<Study> read_study(const std::string& file, Diagnostics&);
 
 }  // namespace stickslip

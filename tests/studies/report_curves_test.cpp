@@ -1,4 +1,5 @@
 /// The rows and curves of the charts of a report.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "studies/report/charts.hpp"
@@ -309,6 +311,32 @@ TEST_F(ReportCurves, ShowsTheHistoryOfTheHardestStep) {
   for (const auto& row : figure->rows) ++iterations[row["label"]];
   EXPECT_EQ(iterations.at("Penalty stiffness=1000"), 5);
   EXPECT_EQ(iterations.at("Penalty stiffness=1e5"), 3);
+}
+
+/// Meshes that are varied are a series by their unknowns; what varies beside them is chosen.
+TEST_F(ReportCurves, ShowsTheErrorOfMeshesThatAreVaried) {
+  std::vector<json> cells;
+  for (const auto& [mesh, unknowns, error] : {std::tuple{"coarse.msh", 100, 0.04}, {"fine.msh", 400, 0.01}})
+    for (const double friction : {0.1, 0.2}) {
+      json row = cell("monolithic_al", json::object(), 0, 3);
+      row["id"] = fmt::format("{} {}", mesh, friction);
+      row["vary"] = {{"/bodies/a/mesh/gmsh", mesh}, {"/contacts/c/friction", friction}};
+      row["size"]["displacements"] = unknowns;
+      row["errors"]["discretization"] = {{"response:press", error}};
+      cells.push_back(row);
+    }
+  json study = description();
+  study["vary"] = {{"meshes", {{"/bodies/a/mesh/gmsh", {"coarse.msh", "fine.msh"}}, {"/time/steps", {1, 2}}}},
+                   {"/contacts/c/friction", {0.1, 0.2}}};
+  record(study, cells);
+  const auto figure = report::mesh_convergence(this->study());
+  ASSERT_TRUE(figure);
+  std::map<std::string, std::vector<double>> of;
+  for (const auto& row : figure->rows)
+    if (row["panel"] == "level" && row["quantity"] == "press")
+      of[row["scene"]].insert(of[row["scene"]].end(), {row["level"], row["error"]});
+  EXPECT_THAT(of.at("friction = 0.1"), ElementsAre(100, 0.04, 400, 0.01));
+  EXPECT_EQ(of.size(), 2u);
 }
 
 /// The last iterate stands at the number that the table of steps gives.

@@ -49,6 +49,52 @@ TEST_F(ReportHeadline, HeadlineSaysForWhichSceneThePenaltysErrorFallsAndWhereItF
                         "1e9. It fails at 1e9 (cap) for friction = 0.3."));
 }
 
+TEST_F(ReportHeadline, SaysForEachSceneWhichMethodIsCheapest) {
+  std::vector<json> cells = three_methods();
+  for (json row : three_methods()) {
+    row["scene"] = "b.json";
+    row["id"] = row["id"].get<std::string>() + "b";
+    if (row["method"].contains("penalty")) row["errors"]["enforcement"]["response:press"] = 1e-9;
+    row["cost"]["counts"]["factorizations"] = row["method"].contains("penalty") ? 3 : 30;
+    cells.push_back(row);
+  }
+  for (std::size_t i = 0; i < cells.size() / 2; ++i) cells[i]["scene"] = "a.json";
+  json study = description();
+  study["scenes"] = {"a.json", "b.json"};
+  study["scene_titles"] = {{"a.json", "A"}, {"b.json", "B"}};
+  record(study, cells);
+  const std::string html = page();
+  const auto table = html.substr(html.find("Which method is cheapest, scene by scene"), 3000);
+  EXPECT_THAT(table, HasSubstr("<th scope=\"row\">a.json: A</th>"));
+  EXPECT_THAT(table, HasSubstr("<th scope=\"row\">b.json: B</th>"));
+  const auto of_a = table.substr(table.find("a.json"), table.find("b.json") - table.find("a.json"));
+  const auto of_b = table.substr(table.find("b.json"), table.find("</table>") - table.find("b.json"));
+  EXPECT_THAT(of_a, HasSubstr("Monolithic AL"));
+  EXPECT_THAT(of_b, HasSubstr("Penalty"));
+  EXPECT_THAT(of_b, Not(HasSubstr("Monolithic AL")));
+  for (auto& row : cells)
+    if (row["scene"] == "b.json") row["status"] = "cap";
+  record(study, cells);
+  EXPECT_THAT(page(), HasSubstr(">no run converged</td>"));
+}
+
+TEST_F(ReportHeadline, SaysWhatVariesTogether) {
+  std::vector<json> cells = three_methods();
+  for (json row : three_methods()) {
+    row["id"] = row["id"].get<std::string>() + "b";
+    row["vary"] = {{"/bodies/a/mesh/gmsh", "fine.msh"}, {"/time/legs", {{1, 2}}}};
+    cells.push_back(row);
+  }
+  for (std::size_t i = 0; i < cells.size() / 2; ++i)
+    cells[i]["vary"] = {{"/bodies/a/mesh/gmsh", "coarse.msh"}, {"/time/legs", {{1, 1}}}};
+  json study = description();
+  study["vary"] = {
+      {"meshes", {{"/bodies/a/mesh/gmsh", {"coarse.msh", "fine.msh"}}, {"/time/legs", {{{1, 1}}, {{1, 2}}}}}}};
+  record(study, cells);
+  EXPECT_THAT(this->study().variants, testing::ElementsAre("meshes (gmsh = coarse.msh)", "meshes (gmsh = fine.msh)"));
+  EXPECT_THAT(page(), HasSubstr("Varied together as meshes, 2 variants: /bodies/a/mesh/gmsh, /time/legs."));
+}
+
 /// Which methods are lost where comes before who is the cheapest.
 TEST_F(ReportHeadline, SaysWhichMethodsConvergeWhere) {
   std::vector<json> cells;

@@ -50,7 +50,7 @@ TEST_F(ReportNumbers, WeighsBackSolvesByTheirMeasuredCost) {
   record(description(), three_methods());
   const auto s = study();
   // 14 factorisations and 28 back-solves at a tenth each: exact but for the rounding of these few sums.
-  EXPECT_NEAR(s.ratio.at(0), 0.1, 1e-14);
+  EXPECT_NEAR(s.ratio.at(""), 0.1, 1e-14);
   EXPECT_NEAR(s.cells[0].work, 14 + 2.8, 1e-12);
   EXPECT_NEAR(s.cells[0].sensitivity_work, 14 + 2.9, 1e-12);
   EXPECT_NEAR(s.cells[0].seconds, 28 - 0.1, 1e-12);

@@ -89,6 +89,19 @@ INSTANTIATE_TEST_SUITE_P(
                     "/vary/~1obstacles~1floor~1plane~1normal~11", "overlaps /obstacles/floor/plane/normal, which"},
         BrokenStudy{"vary_one_value", R"("/contacts/sole/friction": [0, 0.3])", R"("/contacts/sole/friction": @0.3)",
                     "/vary/~1contacts~1sole~1friction", "must be a list of values"},
+        BrokenStudy{"linked_lengths", "[0, 0.3]", R"([0, 0.3], "both": {"/time/end": [1, 2], "/time/steps": @[1]})",
+                    "/vary/both/~1time~1steps", "has 1 value, but /time/end has 2; lists that are linked must"},
+        BrokenStudy{"linked_alone", "[0, 0.3]", R"([0, 0.3], "both": @{"/time/end": [1, 2]})", "/vary/both",
+                    "must be two or more lists of values by JSON pointer"},
+        BrokenStudy{"linked_overlap", "[0, 0.3]",
+                    R"([0, 0.3], "more": {"/time/end": [1, 2], @"/contacts/sole/friction": [1, 2]})",
+                    "/vary/more/~1contacts~1sole~1friction", "overlaps /contacts/sole/friction"},
+        BrokenStudy{"linked_beyond", "[0, 0.3]", R"([0, 0.3], "both": {"/time/end": [1, 2], "/time/steps": [1, @-3]})",
+                    "/vary/both/~1time~1steps/1", "is -3; must be a whole number"},
+        BrokenStudy{"scene_and_scenes", R"("scene": "scene.json")", R"("scene": "scene.json", @"scenes": ["a", "b"])",
+                    "/scenes", "goes in place of \"scene\""},
+        BrokenStudy{"one_of_scenes", R"("scene": "scene.json")", R"("scenes": @["scene.json"])", "/scenes",
+                    "must be a list of two or more scene files"},
         BrokenStudy{"vary_beyond", "[0, 0.3]", "[0, @-0.3]", "/vary/~1contacts~1sole~1friction/1",
                     "is -0.3; must be a number >= 0"},
         BrokenStudy{"refine_below", R"("refine": [0, 1])", R"("refine": [@-1, 1])", "/refine/0",
@@ -192,6 +205,23 @@ TEST_F(StudyFaults, OfAReferenceAreToldThoughNoCellIsSound) {
   EXPECT_THAT(expand(*study, "1.0", diagnostics_, mesh_files_), IsEmpty());
   EXPECT_EQ(diagnostics_.error_count(), 3u) << diagnostics_.text();
   EXPECT_THAT(diagnostics_.text(), HasSubstr("/reference/2/method/monolithic_al/scale: is -5;"));
+}
+
+TEST_F(StudyFaults, OfOneOfSeveralScenesNameIt) {
+  write("bare.json",
+        edited(scene_text, R"("contacts": {"sole": {"slave": "block.bottom", "master": "floor", "friction": 0.3}},)",
+               R"("contacts": {"face": {"slave": "block.bottom", "master": "floor", "friction": 0.3}},)"));
+  EXPECT_FALSE(
+      read(edited(study_text, R"("scene": "scene.json")", R"("scenes": ["scene.json", "bare.json", "scene.json"])")));
+  EXPECT_THAT(diagnostics_.text(), HasSubstr("/scenes/2: is \"scene.json\", which the list has already\n"));
+  EXPECT_THAT(diagnostics_.text(), HasSubstr("/contacts has no \"sole\"; it has face (of bare.json)\n"));
+  EXPECT_THAT(diagnostics_.text(), testing::Not(HasSubstr("(of scene.json)")));
+}
+
+TEST_F(StudyFaults, OfSeveralScenesWithoutMethodsAreToldOnce) {
+  write("other.json", edited(scene_text, "block", "blocks"));
+  EXPECT_FALSE(read(R"({"scenes": ["scene.json", "other.json"]})"));
+  EXPECT_THAT(diagnostics_.text(), testing::EndsWith("a study of several scenes needs it\n"));
 }
 
 TEST_F(StudyFaults, OfAMissingSceneAreToldWhateverIsVaried) {

@@ -32,7 +32,7 @@ TEST_F(StudyReader, ReadsAllThatAStudySays) {
   ASSERT_EQ(study->methods[1].options.size(), 3u);  // by name: adapt, newton, scale
   EXPECT_EQ(study->methods[1].options[1].pointer, "/newton/tolerance");
   EXPECT_EQ(study->methods[1].options[1].values.at(1).value, 1e-10);
-  EXPECT_EQ(study->vary.at(0).pointer, "/contacts/sole/friction");
+  EXPECT_EQ(study->vary.at(0).knobs.at(0).pointer, "/contacts/sole/friction");
   EXPECT_EQ(study->refine.size(), 2u);
   ASSERT_EQ(study->references.size(), 3u);
   EXPECT_EQ(study->references[0].kind, Reference::Kind::analytic);
@@ -64,6 +64,40 @@ TEST_F(StudyReader, MakesACellOfEveryCombination) {
   EXPECT_EQ(uzawa.scale.value.value, 10);
   EXPECT_EQ(uzawa.newton.tolerance, 1e-8);
   EXPECT_FALSE(uzawa.adapt);
+}
+
+TEST_F(StudyReader, GoesThroughLinkedListsTogether) {
+  const std::string alone = R"("vary": {"/contacts/sole/friction": [0, 0.3]})";
+  const std::string sizes = R"("/bodies/block/mesh/box/max/0": [4, 8], "/bodies/block/mesh/box/cells/0": [4, 4])";
+  const std::string linked = R"("vary": {"/contacts/sole/friction": [0, 0.3], "sizes": {)" + sizes + "}}";
+  const auto all = cells(edited(study_text, alone, linked));
+  ASSERT_EQ(all.size(), 2u * 4u * 7u);  // levels, variants, methods with their options
+  std::set<std::string> variants;
+  for (const CellInput& cell : all) {
+    variants.insert(variant_key(cell));
+    EXPECT_EQ(cell.vary.size(), 3u);
+    const auto& box = cell.document.root()["bodies"]["block"]["mesh"]["box"];
+    EXPECT_EQ(box["max"][0], cell.vary.at("/bodies/block/mesh/box/max/0"));
+    EXPECT_EQ(box["cells"][0], 4 << cell.refine) << "what is varied is refined too";
+  }
+  EXPECT_EQ(variants.size(), 8u);
+  // a study without the link has cells of the same ids: a study that is resumed runs them no second time
+  const auto before = cells(edited(study_text, alone, R"("vary": {"/contacts/sole/friction": [0, 0.3]})"));
+  std::set<std::string> ids;
+  for (const CellInput& cell : all) ids.insert(cell.id);
+  for (const CellInput& cell : before) EXPECT_EQ(ids.count(cell.id), 1u);
+}
+
+TEST_F(StudyReader, RunsEachOfSeveralScenes) {
+  write("wide.json", edited(scene_text, "\"max\": [4, 2]", "\"max\": [8, 2]"));
+  const auto all = cells(edited(study_text, R"("scene": "scene.json")", R"("scenes": ["scene.json", "wide.json"])"));
+  ASSERT_EQ(all.size(), 2u * 28u);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].scene, i < 28 ? "scene.json" : "wide.json");
+    EXPECT_EQ(all[i].document.root()["bodies"]["block"]["mesh"]["box"]["max"][0], i < 28 ? 4 : 8);
+  }
+  EXPECT_NE(variant_key(all[0]), variant_key(all[28]));
+  EXPECT_EQ(cells(study_text)[0].id, all[0].id) << "the id is that of the scene's content";
 }
 
 TEST_F(StudyReader, GivesCellsThatReadAsCompleteScenes) {
