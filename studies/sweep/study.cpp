@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "studies/run/contact_points.hpp"
@@ -13,10 +14,47 @@ using nlohmann::json;
 
 double relative(double difference, double scale) { return difference == 0 ? 0 : difference / scale; }
 
-/// What a derivative is measured by: its own size, or, where it should vanish, what the response over the parameter
-/// makes of it.
-double derivative_scale(double exact, double response, const Parameter& parameter) {
-  return std::max(std::abs(exact), parameter.value != 0 ? std::abs(response / parameter.value) : 0.0);
+/// The size of a parameter: its absolute value. If that is zero, as of a shape: the least change that would change a
+/// response or an objective by its own size.
+class ParameterSize {
+ public:
+  explicit ParameterSize(const Parameter& parameter) : value_(std::abs(parameter.value)) {}
+  /// Takes a response, or its largest size, with its derivative.
+  void see(double response, double derivative) {
+    if (response != 0 && derivative != 0) least_ = std::min(least_, std::abs(response / derivative));
+  }
+  double operator()() const { return value_ > 0 ? value_ : least_; }
+
+ private:
+  double value_, least_ = std::numeric_limits<double>::infinity();
+};
+
+/// What a derivative is measured by: its own size, or, where it should vanish, what the response over the size of the
+/// parameter makes of it.
+double derivative_scale(double exact, double response, const ParameterSize& parameter) {
+  return std::max(std::abs(exact), std::abs(response) / parameter());
+}
+
+/// Sizes of the parameters, from the largest responses and derivatives of all steps, and from the objectives.
+std::vector<ParameterSize> parameter_sizes(const CaseResult& result) {
+  std::vector<ParameterSize> sizes;
+  const auto& parameters = result.problem->model.scene.parameters;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    ParameterSize& size = sizes.emplace_back(parameters[j]);
+    for (std::size_t i = 0; i < result.problem->model.scene.responses.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      double response = 0, derivative = 0;
+      for (const auto& step : result.steps) {
+        response = larger(response, std::abs(step.responses[row]));
+        if (step.sensitivities.size() > 0) derivative = larger(derivative, std::abs(step.sensitivities(row, column)));
+      }
+      size.see(response, derivative);
+    }
+    for (Eigen::Index i = 0; i < result.gradients.of_objectives.rows(); ++i)
+      size.see(result.objectives[i], result.gradients.of_objectives(i, column));
+  }
+  return sizes;
 }
 
 /// Relative L2 difference of component c (0 normal, 1 tangential) of all tractions, weighted by area.
@@ -79,6 +117,7 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
   Errors errors;
   if (result.steps.size() != reference.steps.size() || result.steps.empty()) return errors;
   const auto& scene = result.problem->model.scene;
+  const auto parameters = parameter_sizes(reference);
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
     double difference = 0, size = 0;
     for (std::size_t n = 0; n < result.steps.size(); ++n) {
@@ -95,7 +134,7 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
         complete = complete && computed.size() > 0 && exact.size() > 0;
         if (!complete) break;
         worst = larger(worst, std::abs(computed(i, j) - exact(i, j)));
-        scale = larger(scale, derivative_scale(exact(i, j), size, scene.parameters[j]));
+        scale = larger(scale, derivative_scale(exact(i, j), size, parameters[j]));
       }
       if (complete)
         errors["sensitivity:" + scene.responses[i].name + "/" + scene.parameters[j].name] = relative(worst, scale);
@@ -108,7 +147,7 @@ Errors enforcement_errors(const CaseResult& result, const CaseResult& reference)
     errors["response:" + name] = relative(std::abs(result.objectives[i] - value), size);
     for (std::size_t j = 0; computed.size() > 0 && exact.size() > 0 && j < scene.parameters.size(); ++j) {
       const auto& parameter = scene.parameters[j];
-      const double scale = derivative_scale(exact(i, j), size, parameter);
+      const double scale = derivative_scale(exact(i, j), size, parameters[j]);
       errors["sensitivity:" + name + "/" + parameter.name] = relative(std::abs(computed(i, j) - exact(i, j)), scale);
     }
   }
@@ -124,6 +163,7 @@ Errors discretisation_errors(const CaseResult& result, const ReferenceValues& re
   if (result.steps.empty()) return errors;
   const auto& scene = result.problem->model.scene;
   const auto& last = result.steps.back();
+  const auto parameters = parameter_sizes(result);
   const auto compare = [&](const std::string& name, double computed, const auto& gradient) {
     const auto exact = reference.responses.find(name);
     double size = std::abs(computed);
@@ -137,7 +177,7 @@ Errors discretisation_errors(const CaseResult& result, const ReferenceValues& re
       const auto& parameter = scene.parameters[j];
       const auto value = derivatives->second.find(parameter.name);
       if (value == derivatives->second.end()) continue;
-      const double scale = derivative_scale(value->second, size, parameter);
+      const double scale = derivative_scale(value->second, size, parameters[j]);
       errors["sensitivity:" + name + "/" + parameter.name] = relative(std::abs(gradient[j] - value->second), scale);
     }
   };
@@ -159,6 +199,7 @@ Errors discretisation_errors(const CaseResult& result, const ReferenceValues& re
 std::map<std::string, ErrorScale> error_scales(const CaseResult& result, const ReferenceValues& reference) {
   std::map<std::string, ErrorScale> scales;
   const ReferenceValues own = values_of(result);
+  const auto parameters = parameter_sizes(result);
   for (const auto& [name, computed] : own.responses) {
     const auto exact = reference.responses.find(name);
     const bool referred = exact != reference.responses.end();
@@ -167,7 +208,8 @@ std::map<std::string, ErrorScale> error_scales(const CaseResult& result, const R
     const auto derivatives = own.sensitivities.find(name);
     if (derivatives == own.sensitivities.end()) continue;
     const auto references = reference.sensitivities.find(name);
-    for (const Parameter& parameter : result.problem->model.scene.parameters) {
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      const Parameter& parameter = result.problem->model.scene.parameters[j];
       const auto value = derivatives->second.find(parameter.name);
       if (value == derivatives->second.end()) continue;
       double derivative = value->second;
@@ -177,7 +219,7 @@ std::map<std::string, ErrorScale> error_scales(const CaseResult& result, const R
         known = given != references->second.end();
         if (known) derivative = given->second;
       }
-      scales["sensitivity:" + name + "/" + parameter.name] = {derivative_scale(derivative, size, parameter), known};
+      scales["sensitivity:" + name + "/" + parameter.name] = {derivative_scale(derivative, size, parameters[j]), known};
     }
   }
   return scales;

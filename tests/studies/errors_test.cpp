@@ -56,6 +56,24 @@ TEST(EnforcementErrors, AreTheLargestOfAllStepsOverTheLargestOfAllSteps) {
   EXPECT_NEAR(errors.at("sensitivity:u/E"), 2.0 / 6, rounding_of_errors);
 }
 
+/// Of a parameter that is zero, as a shape is: one response tells how large it may be, and another, whose derivative
+/// is zero but for rounding, is measured by that.
+TEST(EnforcementErrors, OfAParameterThatIsZeroAreRelativeToWhatItDoesElsewhere) {
+  Scene s = block_problem()->model.scene;
+  s.responses.push_back(scenes::response("load", Response::Kind::displacement, "block.top", "x"));
+  s.parameters[0].value = 0;
+  const auto problem = std::make_shared<const Problem>(s);
+  CaseResult reference = nothing(problem), result = nothing(problem);
+  for (CaseResult* of : {&reference, &result})
+    for (auto& step : of->steps) {
+      step.responses = Vector<double>::Constant(2, 4);
+      step.sensitivities = Matrix<double>::Zero(2, 1);
+      step.sensitivities(0, 0) = 2;  // so the parameter's size is 2
+    }
+  result.steps[1].sensitivities(1, 0) = 1e-12;
+  EXPECT_NEAR(enforcement_errors(result, reference).at("sensitivity:load/E"), 1e-12 / (4 / 2), 1e-20);
+}
+
 TEST(EnforcementErrors, WeighTractionsByArea) {
   const auto problem = block_problem();
   CaseResult reference = nothing(problem), result = nothing(problem);
