@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
+#include <utility>
 #include <vector>
 
 namespace stickslip::report {
@@ -175,15 +177,41 @@ Place place_of(const Frame& frame, const Chart& chart, const json& row) {
   return {frame.x(number_of(row, chart.x.field)), frame.y(number_of(row, chart.y.field))};
 }
 
-/// The option's values at the ends of lines, each where it covers no marker and no other value.
+/// A rectangle of a drawing.
+struct Box {
+  double left, right, top, bottom;
+
+  bool overlaps(const Box& other) const {
+    return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+  }
+  /// Whether a straight piece from one place to another passes through.
+  bool is_crossed(const Place& from, const Place& to) const {
+    double enters = 0, leaves = 1;  // shares of the piece between which it is inside
+    const auto cut = [&](double start, double step, double low, double high) {
+      if (step == 0) return start > low && start < high;
+      const auto [first, second] = std::minmax({(low - start) / step, (high - start) / step});
+      enters = std::max(enters, first);
+      leaves = std::min(leaves, second);
+      return enters < leaves;
+    };
+    return cut(from.x, to.x - from.x, left, right) && cut(from.y, to.y - from.y, top, bottom);
+  }
+};
+
+/// The option's values at the ends of lines: each at its own line's end, where it covers no marker and no other value
+/// and, if there is such a place, no line.
 class EndValues {
  public:
-  EndValues(const Frame& frame, const Chart& chart) : frame_(frame), chart_(chart) {
+  EndValues(const Figure& figure, const Frame& frame, const Chart& chart) : frame_(frame), chart_(chart) {
     constexpr double marker = 5;
     for (const json* row : frame.rows) {
       const auto [x, y] = place_of(frame, chart, *row);
       taken_.push_back({x - marker, x + marker, y - marker, y + marker});
     }
+    for (const Series& series : figure.series)
+      for (const Line& line : lines_of(frame, series))
+        for (std::size_t i = 1; i < line.size(); ++i)
+          pieces_.emplace_back(place_of(frame, chart, *line[i - 1]), place_of(frame, chart, *line[i]));
   }
 
   /// `color`: that of the line, so that a value beside another line's marker is not taken for its own.
@@ -195,32 +223,38 @@ class EndValues {
   }
 
  private:
-  struct Box {
-    double left, right, top, bottom;
-    bool overlaps(const Box& other) const {
-      return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
-    }
-  };
   static constexpr double size = 11, aside = 7, above = 6, below = 14;
 
   void draw_value(const json& row, const std::string& color, Drawing& drawing) {
     const std::string value = row.value(chart_.words.value, "");
     const auto [x, y] = place_of(frame_, chart_, row);
-    const double wide = text_width(value, size);
-    for (const double base : {y - above, y + below})
-      for (const double from : {x + aside, x - aside - wide}) {
-        const Box box{from, from + wide, base - size, base};
-        if (box.left < left || box.right > frame_.width || box.bottom > frame_.bottom ||
-            std::any_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.overlaps(other); }))
-          continue;
-        taken_.push_back(box);
-        return drawing.text(from, base, value, {Anchor::start, size, color});
-      }
+    const double wide = text_width(value, size), middle = y + size / 2 - 1;
+    std::vector<Box> boxes;
+    for (const double base : {y - above, y + below, middle})
+      for (const double from : {x + aside, x - aside - wide}) boxes.push_back({from, from + wide, base - size, base});
+    for (const double base : {y - above - 3, y + below + 3})
+      boxes.push_back({x - wide / 2, x + wide / 2, base - size, base});
+    std::erase_if(boxes, [&](const Box& box) { return !has_room(box); });
+    const auto clear = std::find_if(boxes.begin(), boxes.end(), [&](const Box& box) { return !is_on_a_line(box); });
+    if (boxes.empty()) return;
+    const Box& box = clear == boxes.end() ? boxes.front() : *clear;
+    taken_.push_back(box);
+    drawing.text(box.left, box.bottom, value, {Anchor::start, size, color});
+  }
+
+  bool has_room(const Box& box) const {
+    return box.left >= left && box.right <= frame_.width && box.top >= 0 && box.bottom <= frame_.bottom &&
+           std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.overlaps(other); });
+  }
+  bool is_on_a_line(const Box& box) const {
+    return std::any_of(pieces_.begin(), pieces_.end(),
+                       [&](const auto& piece) { return box.is_crossed(piece.first, piece.second); });
   }
 
   const Frame& frame_;
   const Chart& chart_;
   std::vector<Box> taken_;
+  std::vector<std::pair<Place, Place>> pieces_;  ///< of all lines
 };
 
 /// Markers and lines of one series; false where it has none.
@@ -248,19 +282,57 @@ bool draw_series(const Frame& frame, const Chart& chart, const Series& series, E
   return present;
 }
 
+/// The name of a series and, where the ends of its lines have values, of which option these are.
+std::string name_of(const Series& series, const Frame& frame, const Chart& chart) {
+  if (chart.words.value.empty()) return series.name;
+  const auto row = std::find_if(frame.rows.begin(), frame.rows.end(), [&](const json* each) {
+    return each->value("series", "") == series.name && each->contains("option");
+  });
+  return row == frame.rows.end() ? series.name : series.name + ", " + (*row)->value("option", "");
+}
+
+/// What is chosen of that of which the page offers more: "Quantity: worst response. Scene: mesh level 1."
+std::string chosen_in_words(const Figure& figure) {
+  std::string out;
+  for (const Choice& choice : figure.choices)
+    if (!choice.several && choice.options.size() > 1 && choice.chosen.size() == 1)
+      out += (out.empty() ? "" : " ") + choice.label + ": " + choice.chosen.front() + ".";
+  return out;
+}
+
+/// Words below a drawing in lines as wide as it. Where the last ends.
+double draw_note(const std::string& text, double y, double width, Drawing& drawing) {
+  constexpr double size = 11, line_height = 15, from = 10;
+  std::istringstream words(text);
+  std::string line;
+  const auto end_line = [&] {
+    drawing.text(from, y, line, {Anchor::start, size, "soft"});
+    y += line_height;
+    line.clear();
+  };
+  for (std::string word; words >> word;) {
+    if (!line.empty() && from + text_width(line + " " + word, size) > width) end_line();
+    line += (line.empty() ? "" : " ") + word;
+  }
+  if (!line.empty()) end_line();
+  return y;
+}
+
 /// The names of what is drawn below the axes, side by side where they have room. Its height.
-double draw_legend(const Frame& frame, const std::vector<const Series*>& present, Drawing& drawing) {
+double draw_legend(const Frame& frame, const Chart& chart, const std::vector<const Series*>& present,
+                   Drawing& drawing) {
   constexpr double line_height = 18, sample = 34, gap = 8, apart = 20;
   double x = 10, y = frame.bottom + 58;
   for (const Series* series : present) {
-    const double wide = sample + gap + text_width(series->name, 12);
+    const std::string name = name_of(*series, frame, chart);
+    const double wide = sample + gap + text_width(name, 12);
     if (x > 10 && x + wide > frame.width) {
       x = 10;
       y += line_height;
     }
     drawing.line(x, y, x + sample, y, style_of(*series, true));
     if (has_markers(frame, *series)) drawing.path(marker(series->shape, x + sample / 2, y), style_of(*series, false));
-    drawing.text(x + sample + gap, y + 4, series->name);
+    drawing.text(x + sample + gap, y + 4, name);
     x += wide + apart;
   }
   return y + line_height;
@@ -325,11 +397,12 @@ std::optional<Drawing> draw_plot(const Figure& figure, const Chart& chart, doubl
   draw_axes(*frame, chart, drawing);
   draw_ground(*frame, drawing);
   draw_guides(*frame, chart, drawing);
-  EndValues values(*frame, chart);
+  EndValues values(figure, *frame, chart);
   std::vector<const Series*> present;
   for (const auto& series : figure.series)
     if (draw_series(*frame, chart, series, values, drawing)) present.push_back(&series);
-  drawing.set_height(draw_legend(*frame, present, drawing));
+  const double below = draw_legend(*frame, chart, present, drawing);
+  drawing.set_height(draw_note(chosen_in_words(figure), below + 4, width, drawing));
   return drawing;
 }
 

@@ -12,8 +12,8 @@ namespace stickslip::report {
 constexpr double two_columns = 640, one_column = 320;
 
 /// The rows that are chosen at first in one chart of a figure: curves, the values at their ends where these have room,
-/// guides, the line of exact zeros, markers, crosses for failed runs, ticks at round numbers, a legend. Nothing where
-/// no row can be drawn.
+/// guides, the line of exact zeros, markers, crosses for failed runs, ticks at round numbers, a legend, and which of the
+/// choices that the page offers is drawn. Nothing where no row can be drawn.
 std::optional<Drawing> draw_plot(const Figure& figure, const Chart& chart, double width = two_columns);
 
 /// One axis: values onto pixels, linear or logarithmic (over a decade at least), with some room at both ends, but none

@@ -98,7 +98,10 @@ json rows_of(const Study& study, const Subject& subject, SeriesList& series) {
       if (const double median = derivative ? cell.median_sensitivity_seconds : cell.median_seconds; median > 0)
         r["median"] = median;
       r["order"] = value && value->value ? *value->value : 0;
-      if (value) r["setting"] = value->text;
+      if (value) {
+        r["option"] = knob;
+        r["setting"] = value->text;
+      }
       rows.push_back(r);
       series.add(name, cell.family);
     }

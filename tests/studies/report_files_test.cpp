@@ -137,6 +137,38 @@ TEST(ReportDrawing, PgfRaisesPowers) {
 }
 
 /// Names stand side by side below a chart, which leaves three quarters of the height or more to the curves.
+/// A reader of the file alone knows which option the values at the ends are of, and what was chosen on the page.
+TEST_F(ReportFiles, ChartsCarryWhatTheyNeed) {
+  record(description(), in_two_scenes(three_methods()));
+  const auto figure = report::work_precision(study(), report::Against::same_mesh, report::Of::responses);
+  const std::string svg = report::draw_plot(*figure, figure->charts.front())->inline_svg();
+  EXPECT_THAT(svg, HasSubstr(">Penalty, stiffness<"));
+  EXPECT_THAT(svg, HasSubstr("Scene: friction = 0.3."));
+  EXPECT_THAT(report::to_csv(figure->rows), HasSubstr(",option,"));
+}
+
+/// The value at the end of one line stands on no other line where it has another place.
+TEST_F(ReportFiles, ValuesAtTheEndsOfLinesStandBesideLines) {
+  report::Figure figure;
+  figure.series = {{"a", "#0072B2", "circle", {1, 0}, 60}, {"b", "#D55E00", "square", {1, 0}, 60}};
+  const auto row = [&](const char* series, double x, double y, const char* setting) {
+    figure.rows.push_back(
+        {{"series", series}, {"line", series}, {"x", x}, {"y", y}, {"order", x}, {"setting", setting}});
+  };
+  row("a", 0, 0, "left");
+  row("a", 10, 10, "right");
+  row("b", 10.2, 11, "up");  // steep, and close to the right of the end of a
+  row("b", 10.6, 0, "down");
+  report::Chart chart{.title = "", .x = {.field = "x", .title = "x"}, .y = {"y", "y"}, .tooltip = {}};
+  chart.words = {"series", "setting"};
+  const std::string svg = report::draw_plot(figure, chart)->inline_svg();
+  const auto place_of = [&](const std::string& word) {
+    const auto end = svg.find(">" + word + "<"), from = svg.rfind("x=\"", end);
+    return std::stod(svg.substr(from + 3));
+  };
+  EXPECT_LT(place_of("right"), report::Axis(0, 10.6, false, 74, 620)(10)) << "left of the end, as b is right of it";
+}
+
 TEST_F(ReportFiles, LegendsTakeLessThanAQuarterOfTheHeight) {
   auto cells = three_methods();
   for (const double scale : {1.0, 10.0, 100.0})
@@ -160,7 +192,8 @@ TEST_F(ReportFiles, FiguresHoldWhatThePagesChartsShow) {
   page();
   const std::string work = file("enforcement-responses-against-work-factorisations.svg");
   EXPECT_THAT(work, HasSubstr(">exactly 0<"));
-  for (const char* words : {">1000<", ">1e9<", ">1e-4<", ">1e-8<", ">Penalty<", ">Uzawa AL<", ">Monolithic AL<"})
+  for (const char* words :
+       {">1000<", ">1e9<", ">1e-4<", ">1e-8<", ">Penalty, stiffness<", ">Uzawa AL, tolerance<", ">Monolithic AL<"})
     EXPECT_THAT(work, HasSubstr(words));
   EXPECT_THAT(file("error-stiffness-responses.svg"), HasSubstr(">slope -1<"));
 }
