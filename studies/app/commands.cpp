@@ -236,7 +236,7 @@ int run_command(const RunArguments& arguments) {
   if (arguments.json) {
     std::cout << json_text(document, 2) << '\n';
   } else {
-    if (arguments.trace) std::cout << trace_table(trace) << '\n';
+    if (arguments.trace) say(std::cout, "{}\n", trace_table(trace));
     print_summary(result);
     print_start_gaps(*loaded->problem);
     const std::string ending =
@@ -259,7 +259,7 @@ int explain_command(const RunArguments& arguments) {
     std::cout << json_text({{"explain", text}, {"ledger", ledger_json(forecast(loaded->input, *loaded->problem))}}, 2)
               << '\n';
   else
-    std::cout << wrapped_lines(text, 6, terminal_width());
+    say(std::cout, "{}", wrapped_lines(text, 6, terminal_width()));
   return done;
 }
 

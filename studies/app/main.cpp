@@ -225,7 +225,8 @@ int run_line(CLI::App& app, const Actions& actions, int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, faults;  // a fault quotes the argument
     const int code = app.exit(error, out, faults);
-    std::cout << out.str();
+    constexpr std::size_t below_meaning = 30;  // columns of an option or a command
+    std::cout << wrapped_lines(out.str(), below_meaning, terminal_width());
     std::cerr << printable_lines(faults.str());
     return code == 0 ? on_standard_output(done) : bad_input;
   }

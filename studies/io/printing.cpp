@@ -4,7 +4,9 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -125,10 +127,47 @@ std::string wrapped_lines(std::string_view text, std::size_t indent, std::size_t
   return out + wrapped(words, " ", indent, width);
 }
 
-std::size_t terminal_width() {
+namespace {
+
+/// Where a line that is too wide is broken: before the last column or word that has room, else behind a comma; its end
+/// where there is no such place behind `indent`.
+std::size_t break_of(std::string_view line, std::size_t indent, std::size_t width) {
+  const auto begins_gap = [&](std::size_t i) { return line[i] == ' ' && line[i - 1] != ' '; };
+  for (std::size_t i = width; i > indent; --i)
+    if (begins_gap(i)) return i;
+  const std::size_t comma = line.substr(0, width).rfind(',');
+  return comma == std::string_view::npos || comma < indent ? line.size() : comma + 1;
+}
+
+std::size_t width_of(int stream) {
   winsize size{};
-  const bool known = ::isatty(STDOUT_FILENO) == 1 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const bool known = ::isatty(stream) == 1 && ::ioctl(stream, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known ? size.ws_col : std::numeric_limits<std::size_t>::max() / 2;
+}
+
+}  // namespace
+
+std::string wrapped_rows(std::string_view text, std::size_t indent, std::size_t width) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string line(text.substr(0, end));
+    for (std::size_t at = 0; line.size() > width && (at = break_of(line, indent, width)) < line.size();) {
+      out += line.substr(0, at) + "\n";
+      const bool one_space = line[at] == ' ' && at + 1 < line.size() && line[at + 1] != ' ';  // between words
+      line = std::string(indent, ' ') + line.substr(one_space ? at + 1 : at);
+    }
+    out += line;
+    if (end < text.size()) out += '\n';
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+std::size_t terminal_width() { return width_of(STDOUT_FILENO); }
+
+std::size_t terminal_width(const std::ostream& out) {
+  return width_of(&out == &std::cout ? STDOUT_FILENO : &out == &std::cerr ? STDERR_FILENO : -1);
 }
 
 std::string shell_word(std::string_view word) {

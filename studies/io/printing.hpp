@@ -1,6 +1,7 @@
 /// Text from outside (names, paths, recorded messages) as it is printed, written to JSON or put on a command line.
 #pragma once
 
+#include <iosfwd>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -28,8 +29,14 @@ std::string wrapped(const std::vector<std::string>& pieces, std::string_view bet
 /// The same of each line of a text, broken at single spaces: where columns are apart by more, they stay together.
 std::string wrapped_lines(std::string_view text, std::size_t indent, std::size_t width);
 
+/// The same of each line that is wider, a row of a table too: its columns go on below, under one another as before. What
+/// has no space is broken behind a comma.
+std::string wrapped_rows(std::string_view text, std::size_t indent, std::size_t width);
+
 /// Characters in a line of the terminal that standard output is; no bound where it is none, so files stay as they are.
 std::size_t terminal_width();
+/// The same of a stream: standard output or standard error; no bound of any other.
+std::size_t terminal_width(const std::ostream& out);
 
 /// A word as bash reads it again: as it is, in single quotes, or, where it holds what would not print, as $'...'.
 std::string shell_word(std::string_view word);

@@ -114,5 +114,17 @@ TEST(WrappedLines, BreakAtSingleSpaces) {
   EXPECT_EQ(wrapped_lines("", 2, 10), "");
 }
 
+TEST(Printing, WrapsRowsSoThatColumnsStayUnderOneAnother) {
+  const std::string table = "name      time     error  verdict\npress      1.5   2.0e-13  agrees\n";
+  EXPECT_EQ(wrapped_rows(table, 2, 100), table);
+  EXPECT_EQ(wrapped_rows(table, 2, 16),
+            "name      time\n       error\n    verdict\npress      1.5\n     2.0e-13\n    agrees\n");
+  EXPECT_EQ(wrapped_rows(table, 2, 25),
+            "name      time     error\n    verdict\npress      1.5   2.0e-13\n    agrees\n");
+  EXPECT_EQ(wrapped_rows("one two three", 2, 9), "one two\n  three");
+  EXPECT_EQ(wrapped_rows("{\"a\":1,\"b\":2}", 2, 9), "{\"a\":1,\n  \"b\":2}");
+  EXPECT_EQ(wrapped_rows("unbreakable\n\n", 2, 4), "unbreakable\n\n");
+}
+
 }  // namespace
 }  // namespace stickslip
