@@ -128,12 +128,16 @@ class Judge {
     const Field inner = bodies_.forces - loads;
     advance(part(increment, "contacts"), inner - taken(held, inner), step);
     Field pushed = Field::Zero(3, u_.cols());
+    rounded_ = Eigen::VectorXd::Zero(u_.cols());
     for (auto& contact : contacts_) {
       Field forces = Field::Zero(3, u_.cols());
       for (auto& [node, touch] : contact.touches) {
         check_place(contact, touch, step);
         step.tractions[contact.name][node] = {touch.pressure(), touch.friction().dot(touch.e())};
-        for (const auto& [n, weight] : touch.weights) forces.col(n) += weight * touch.area * touch.traction;
+        for (const auto& [n, weight] : touch.weights) {
+          forces.col(n) += weight * touch.area * touch.traction;
+          rounded_[n] += std::abs(weight) * rounded_force(touch);
+        }
       }
       measure_moment(contact, forces);
       pushed += forces;
@@ -191,6 +195,18 @@ class Judge {
   double rounded_gap(const Touch& touch) const {
     const bool rounds = touch.faces && (scene_.finite || touch.gap != touch.normal.dot(touch.relative));
     return rounds ? 4 * rounding_of_motion * scene_.points.col(touch.node).norm() : 0;
+  }
+
+  /// What the springs of a penalty make of that: a state whose gaps are rounded balances no better. Springs are some
+  /// 1e3 times as stiff as bodies; where next to nothing presses, this is more than a share of the forces.
+  double rounded_force(const Touch& touch) const {
+    constexpr double stiffest =
+        1e4;  // of bodies: ten times the usual; a file may call its springs as stiff as it likes
+    double stiffness = 0;
+    for (const double compliance : touch.compliance)
+      if (compliance > 0 && touch.pressure() > 0)
+        stiffness += std::min(touch.area / compliance, stiffest * bodies_.stiffness);
+    return stiffness * (scene_.finite ? rounded_gap(touch) : 4 * rounding_of_motion * L_);  // (small: of motions alone)
   }
 
   /// Signorini's conditions of a place; then its friction, and its work.
@@ -262,7 +278,8 @@ class Judge {
         note(step, supports, std::abs(direction.dot(u_.col(node)) - value) * over(L_), at(node));
     Eigen::Index worst = 0;
     const double off = residual.colwise().norm().maxCoeff(&worst);
-    note(step, equilibrium, residual.allFinite() ? off * over(F_) : infinity, at(static_cast<int>(worst)));
+    note(step, equilibrium, residual.allFinite() ? off * over(F_) : infinity, at(static_cast<int>(worst)),
+         equilibrium.allowed + rounded_.maxCoeff() * over(F_));  // (a body that springs hold may show it anywhere)
   }
 
   void check_balance(const Field& outer, const Field& contact, Step& step) {
@@ -271,11 +288,12 @@ class Judge {
     if (scene_.axisymmetric) sum[0] = 0;
     const double all = F_ + forces_of.colwise().norm().sum(), many = std::sqrt(static_cast<double>(u_.cols()));
     const std::string what = "of loads, supports and contacts";
-    note(step, forces, sum.norm() * over(all), what, many * forces.allowed);
+    const double rounded = rounded_.sum() * over(all);  // (errors of springs, which all may have one sign)
+    note(step, forces, sum.norm() * over(all), what, many * forces.allowed + rounded);
     const bool springs = std::ranges::any_of(scene_.bodies, &Body::spring);
     if (scene_.axisymmetric || (scene_.finite && springs)) return;  // (a spring at its anchor has a moment of its own)
     note(step, moments, moment(forces_of) * over(all * arms().colwise().norm().maxCoeff()), what,
-         many * moments.allowed);
+         many * moments.allowed + rounded);
   }
 
   /// work = stored + dissipated, from the start.
@@ -283,6 +301,7 @@ class Judge {
     const double done = (outer + outer_).cwiseProduct(moved).sum() / 2;
     for (const Field& change : {Field(outer - outer_), Field(contact - contact_)})
       slack_ += change.cwiseProduct(moved).colwise().sum().cwiseAbs().sum() / 2;
+    slack_ += rounded_.sum() * moved.colwise().norm().maxCoeff();
     outer_ = outer;
     contact_ = contact;
     work_ += done;
@@ -334,6 +353,7 @@ class Judge {
   std::vector<Contact> contacts_;
   Bodies bodies_;
   Field u_, outer_, contact_;                           ///< displacements, forces from outside and of contact
+  Eigen::VectorXd rounded_;                             ///< of nodes: what springs make of rounded gaps
   std::map<std::string, double> largest_;               ///< of kinds of responses
   double F_ = 0, L_ = 0, T_ = 0;                        ///< largest force, motion, traction
   double work_ = 0, spent_ = 0, slack_ = 0, size_ = 0;  ///< energies: done, dissipated, not known, of all parts

@@ -410,6 +410,11 @@ std::vector<Fault> in_reports() {
       {"a moment falsified", "two blocks", "responses", in_response("M", 1 + 1e-6)},
       {"a response that is no number", "block", "responses",
        [](Solved& s) { s.result["steps"].back()["responses"]["N"] = nullptr; }},
+      {"springs so stiff that rounding might excuse all", "belt", "equilibrium",
+       [](Solved& s) {
+         contact(s)["compliance"] = std::vector<double>(2 * contact(s)["nodes"].size(), 1e-300);
+         pressure(s) = (1 + 1e-5) * pressure(s).get<double>();
+       }},
       {"springs softer than they are", "belt", "complementarity",
        [](Solved& s) { contact(s)["compliance"] = std::vector<double>(2 * contact(s)["nodes"].size(), 1e-3); }},
   };
