@@ -1,5 +1,7 @@
 #include "studies/run/case.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -133,6 +135,20 @@ void name_loose_body(const Model& model, Trajectory<double>& trajectory) {
   if (trajectory.status == Status::singular) trajectory.status = Status::no_equilibrium;  // nothing balances its load
   trajectory.message =
       loose->name + " is free to move: no support holds it and no contact touches it; add a support or a contact";
+}
+
+/// Says of derivatives that a singular tangent does not have whether a body floats there, and what to do.
+void name_floating_body(CaseResult& result) {
+  if (!is_converged(result.trajectory.status) || result.gradients.status != Status::singular) return;
+  const auto floating = bodies_that_float(result);
+  const auto first =
+      std::min_element(floating.begin(), floating.end(), [](auto& a, auto& b) { return a.first < b.first; });
+  if (first == floating.end()) return;
+  result.gradients.message = fmt::format(
+      "there are no derivatives: {} floats at the end of the step at t = {:.6g}, where it is free to move {}. "
+      "Nothing but damping holds it, so the tangent of the converged state is singular. Hold it by a support, "
+      "or leave out the parameters",
+      first->name, first->first, first->motion);
 }
 
 /// Whether the run ended with a tangent that derivatives can be taken of.
@@ -334,6 +350,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   }
   refuse_overflow(result);
   refuse_open_objectives(result);
+  name_floating_body(result);
   return result;
 }
 

@@ -168,33 +168,13 @@ std::string motion_of_floating_body(const Problem& problem, const State<double>&
 }
 
 void add_floating_bodies(const CaseResult& result, std::vector<Warning>& warnings) {
-  const auto& model = result.problem->model;
-  double reach = 0;
-  for (const auto& step : solved_steps(result))
-    reach = std::max(reach, largest_nodal_norm(step.increment->state.displacement, model.dimension));
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (&model.scene.bodies[b] == loose_body(model)) continue;  // (studies/run/solution_warnings.cpp names it)
-    std::string motion;
-    double first = 0;
-    int steps = 0;
-    for (const auto& step : solved_steps(result)) {
-      const std::string now = step.bodies.empty()
-                                  ? motion_of_floating_body(*result.problem, step.increment->state, b, reach)
-                                  : step.bodies[b].free_motion;
-      if (now.empty()) continue;
-      if (++steps > 1) continue;
-      motion = now;
-      first = step.increment->time;
-    }
-    if (steps == 0) continue;
-    const std::string& name = model.scene.bodies[b].name;
+  for (const FloatingBody& body : bodies_that_float(result))
     warnings.push_back(
-        {WarningCode::floating_body, name, static_cast<double>(steps),
+        {WarningCode::floating_body, body.name, static_cast<double>(body.steps),
          "hold it by a support, or end the run while something presses on it",
          fmt::format("{} floats at the end of {} of {} steps, first at t = {:.6g}: it is free to move {}, as neither "
                      "supports nor a contact that presses hold it, and its place is not determined",
-                     name, steps, solved_steps(result).size(), first, motion)});
-  }
+                     body.name, body.steps, solved_steps(result).size(), body.first, body.motion)});
 }
 
 /// Share of the force of contact c that one node carries, and its force, at a step; nothing where it does not press.
@@ -263,6 +243,28 @@ void add_path_that_goes_on(const CaseResult& result, std::vector<Warning>& warni
 }
 
 }  // namespace
+
+std::vector<FloatingBody> bodies_that_float(const CaseResult& result) {
+  const auto& model = result.problem->model;
+  std::vector<FloatingBody> floating;
+  double reach = 0;
+  for (const auto& step : solved_steps(result))
+    reach = std::max(reach, largest_nodal_norm(step.increment->state.displacement, model.dimension));
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (&model.scene.bodies[b] == loose_body(model)) continue;  // (studies/run/solution_warnings.cpp names it)
+    FloatingBody body{model.scene.bodies[b].name};
+    for (const auto& step : solved_steps(result)) {
+      const std::string now = step.bodies.empty()
+                                  ? motion_of_floating_body(*result.problem, step.increment->state, b, reach)
+                                  : step.bodies[b].free_motion;
+      if (now.empty() || ++body.steps > 1) continue;
+      body.motion = now;
+      body.first = step.increment->time;
+    }
+    if (body.steps > 0) floating.push_back(std::move(body));
+  }
+  return floating;
+}
 
 BodyMeasures measures_of_body(const Problem& problem, const State<double>& state, std::size_t b) {
   BodyMeasures measures;

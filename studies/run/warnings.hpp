@@ -29,6 +29,15 @@ namespace stickslip {
 /// Empty if there is none, or if nothing converged.
 std::vector<Warning> warnings_of(const CaseResult& result);
 
+/// A body that nothing which presses holds at the end of some steps.
+struct FloatingBody {
+  std::string name;
+  int steps = 0;            ///< how many
+  double first = 0;         ///< time of the first
+  std::string motion = {};  ///< that it is free to make there, in words
+};
+std::vector<FloatingBody> bodies_that_float(const CaseResult& result);
+
 /// How many of the solved steps have a mark of a contact.
 long steps_with(const CaseResult& result, std::size_t contact, std::vector<char> StepResult::*marks);
 

@@ -54,6 +54,22 @@ TEST(AFloatingBody, StaysWhereItIsUntilItIsTouched) {
   }
 }
 
+/// Nothing but damping holds it at the end of a step, so there is no tangent that derivatives could be taken of.
+TEST(AFloatingBody, IsNamedWhereDerivativesAreAskedFor) {
+  json scene = tube_under_a_block(20);
+  scene["time"] = {{"legs", {{0.15, 3}}}};
+  scene["responses"] = {{"push", {{"reaction", {{"on", "block.top"}, {"component", "y"}}}}}};
+  scene["parameters"] = {{"mu", "/contacts/floor/friction"}};
+  for (const auto& method : methods) {
+    const auto result = cases::run(scene, {{method, json::object()}}, "tube.json");
+    EXPECT_EQ(result.status(), Status::singular) << method;
+    EXPECT_THAT(result.message(), testing::StartsWith("there are no derivatives: tube floats at the end of the step at "
+                                                      "t = 0.05, where it is free to move"))
+        << method;
+    EXPECT_THAT(result.message(), testing::HasSubstr("Hold it by a support, or leave out the parameters")) << method;
+  }
+}
+
 TEST(AFloatingBody, IsToldBeforeTheRunAsHeldByContactAlone) {
   json scene = tube_under_a_block(20);
   scene["method"] = {{"monolithic_al", json::object()}};
