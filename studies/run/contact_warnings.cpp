@@ -242,8 +242,8 @@ void add_narrow_contact(const CaseResult& result, int c, std::vector<Warning>& w
                      contact.name, of_master, contact.master)});
   else if (hardest.pressed == 2 && hardest.points > 2)
     warnings.push_back({WarningCode::narrow_contact, contact.name, 1.0, "refine the slave's mesh towards the contact",
-                        fmt::format("{}: two of {} nodes carry the force: it is one facet of the slave wide, and "
-                                    "pressure and half width are those of the mesh",
+                        fmt::format("{}: two of {} nodes carry the force: the contact is one facet of the slave wide, "
+                                    "and its pressure and half width depend on the mesh",
                                     contact.name, hardest.points)});
 }
 

@@ -55,7 +55,7 @@ class Result:
     converged : bool
         Whether it is one of the first two.
     message : str
-        What went wrong, where, and what to try; "" where nothing did.
+        What went wrong, where, and what to try; "" if nothing did.
     notes : list of str
         What the reader had to say of a valid scene.
     title, method : str
@@ -68,7 +68,7 @@ class Result:
     responses : dict of ndarray, (steps,)
         By name.
     sensitivities : dict of dict of ndarray, (steps,)
-        By response and parameter: derivative of the response, as its method computed it, by the parameter; NaN where it
+        By response and parameter: derivative of the response, as its method computed it, by the parameter; NaN if it
         is not known.
     coordinates : ndarray, (nodes, dimension)
         Initial.
@@ -121,7 +121,7 @@ class Result:
 
     @property
     def objectives(self) -> Dict[str, Dict[str, Any]]:
-        """By name: `value`, and `gradient` by parameter. Empty where the scene has none."""
+        """By name: `value`, and `gradient` by parameter. Empty if the scene has none."""
         return self.document.get("objectives", {})
 
     @property
@@ -137,7 +137,7 @@ class Result:
     def one_sided(self, response: str, parameter: str) -> np.ndarray:
         """A derivative from below and from above at each step, (steps, 2).
 
-        Where it has one value both are that; NaN where a side has none, or is not known. KeyError where there is no such
+        If it has one value, both are that; NaN if a side has none, or is not known. KeyError if there is no such
         response or parameter.
         """
         _arguments.text(response, "response", "the name of a response")
@@ -158,7 +158,7 @@ class Result:
         """Displacement of the nodes at the end of a step, (nodes, dimension).
 
         `iterate`: of a step without a solution the last iterate of Newton's method, which is no answer but may show why
-        it failed. IndexError where there is no such step, ValueError where it has no solution or its state was let go
+        it failed. IndexError if there is no such step, ValueError if it has no solution or its state was let go
         (`sensitivity/memory`).
         """
         displacement = self._displacements[self._solved(step, iterate)]
@@ -169,7 +169,7 @@ class Result:
     def displacement_derivative(self, parameter: str) -> np.ndarray:
         """Derivative of the displacement of the last step by a parameter, (nodes, dimension).
 
-        KeyError where the scene has no such parameter, ValueError where the derivatives were not found.
+        KeyError if the scene has no such parameter, ValueError if the derivatives were not found.
         """
         _arguments.text(parameter, "parameter", "the name of a parameter")
         if parameter in self._displacement_derivatives:
@@ -190,7 +190,7 @@ class Result:
         slip : (points, tangents), of the last increment, along the same tangents
         area : (points,), tributary area; a force is the sum of traction times area
 
-        KeyError where there is no such contact, IndexError where there is no such step, ValueError where it has no
+        KeyError if there is no such contact, IndexError if there is no such step, ValueError if it has no
         solution.
         """
         _arguments.text(name, "name", "the name of a contact")
@@ -224,7 +224,7 @@ class Gradcheck:
     status, message : str
         Of the run itself, as in Result.
     faults : str
-        Why it did not pass; "" where it did.
+        Why it did not pass; "" if it did.
     runs, rejected : int
         Runs for differences, and how many of them pass through other contact states somewhere, or fail: a run counts up
         to there.
@@ -276,10 +276,10 @@ def run(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {},
     folder
         Where result.json and the fields (.vtu) are written; None: nowhere.
     check
-        Raise NotConverged where the run failed. If False, the status of the result says so, and the step without a
+        Raise NotConverged if the run failed. If False, the status of the result says so, and the step without a
         solution has NaN for its responses and derivatives.
 
-    Raises InputError with all faults of the scene, TypeError where an argument is of another type, OSError where the
+    Raises InputError with all faults of the scene, TypeError if an argument is of another type, OSError if the
     disk refuses. Other threads of Python run while it solves; Ctrl-C ends it after the step at hand.
     """
     check = _arguments.flag(check, "check")

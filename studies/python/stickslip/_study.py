@@ -10,7 +10,7 @@ from stickslip import _arguments, _stickslip
 Path = Union[str, "PathLike[str]"]
 Row = Dict[str, Any]
 Table = Any
-"""pandas.DataFrame, or a list of Row where there is no pandas."""
+"""pandas.DataFrame, or a list of Row if there is no pandas."""
 MOST_JOBS = 1024
 """As --jobs of the command."""
 
@@ -33,7 +33,7 @@ def study(study: Path, folder: Union[Path, None] = None, resume: bool = False, r
     shard
         "i/N": every N-th cell alone, from the i-th on.
 
-    Raises InputError with all faults of study, scene and folder, TypeError where an argument is of another type.
+    Raises InputError with all faults of study, scene and folder, TypeError if an argument is of another type.
     Progress goes to sys.stderr. Ctrl-C ends it after the run at hand; finished cells are kept, and resume=True goes on.
     """
     file, target = _arguments.path(study, "study"), b"" if folder is None else _arguments.path(folder, "folder")
@@ -50,7 +50,7 @@ def study(study: Path, folder: Union[Path, None] = None, resume: bool = False, r
 
 
 def load_study(folder: Path) -> Table:
-    """The rows of a study: a pandas.DataFrame, or, where there is no pandas, a list of dicts with the same keys.
+    """The rows of a study: a pandas.DataFrame, or, without pandas, a list of dicts with the same keys.
 
     One row a cell, one column for each of these; what a cell has not is missing (NaN, or no key).
 
@@ -77,7 +77,7 @@ def load_study(folder: Path) -> Table:
     curve, along
         The curve of a work-precision diagram that the row is on, and the value of the option that runs along it.
 
-    Raises InputError where the folder has no study. Rows that are damaged or missing are a RuntimeWarning.
+    Raises InputError if the folder has no study. Rows that are damaged or missing are a RuntimeWarning.
     """
     encoded = _arguments.path(folder, "folder")
     name = fsdecode(encoded)

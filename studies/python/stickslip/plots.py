@@ -1,6 +1,6 @@
 """Tractions of a contact, derivatives over time and work-precision diagrams, drawn by matplotlib.
 
-Each function draws into `ax`, or into axes of its own where that is None, and returns the axes.
+Each function draws into `ax`, or into axes of its own if that is None, and returns the axes.
 """
 
 from typing import Any, Optional
@@ -24,11 +24,11 @@ EXACT = 1e-16
 
 def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax: Any = None,
               iterate: bool = False) -> Any:
-    """Pressure, and shear where there is friction, along a contact at the end of a step; points that slip are marked.
+    """Pressure, and shear if there is friction, along a contact at the end of a step; points that slip are marked.
 
     The abscissa is the initial coordinate along which the contact is longest. Shear in 2D has its sign, that of the
     force on the slave along the contact's tangent; in 3D, which has two tangents, it is its size. `contact` may be left
-    out where the scene has one. A step without a solution is refused (ValueError); `iterate=True` draws its last iterate,
+    out if the scene has one. A step without a solution is refused (ValueError); `iterate=True` draws its last iterate,
     dashed and named so.
     """
     if not isinstance(result, Result):
@@ -61,7 +61,7 @@ def derivative(result: Result, response: str, parameter: str, ax: Any = None) ->
     """A derivative over time. Where it has two sides it is no point of the curve: the curve has a gap, with a triangle for
     each side that has a derivative.
 
-    KeyError where there is no such response or parameter.
+    KeyError if there is no such response or parameter.
     """
     if not isinstance(result, Result):
         raise _arguments.wrong_type("result", result, "what run() gives, a stickslip.Result")
@@ -115,7 +115,7 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
         solution and its derivatives together.
 
     Runs that did not converge are crosses and on no curve; those that have no error, as they found no solution, are at
-    the upper edge. Errors of exactly 0 are drawn at 1e-16. ValueError where no row has such an error.
+    the upper edge. Errors of exactly 0 are drawn at 1e-16. ValueError if no row has such an error.
     """
     for name, value, allowed in (("of", of, '"response", "sensitivity", or one of them, as "response:press"'),
                                  ("against", against, '"enforcement" or "discretization"'),
