@@ -198,6 +198,12 @@ struct ContinuumKernels {
 
   static void edge_stretches(const Elements& elements, const ElementEdge& edge, const Vector<T>& u,
                              std::vector<ThicknessStretch<T>>& stretches) {
+    if constexpr (Shape::dimension == 2) stretch_edge(elements, edge, u, stretches);
+  }
+
+  /// edge_stretches() of a plane element.
+  static void stretch_edge(const Elements& elements, const ElementEdge& edge, const Vector<T>& u,
+                           std::vector<ThicknessStretch<T>>& stretches) {
     const auto of_element = [&]<Kinematics kinematics, class L>(const L& law) {
       if constexpr (kinematics == Kinematics::plane && L::is_made_for(kinematics, true) && !Remembers<L>) {
         const auto nodes = nodes_of(elements.body(), edge.element);
