@@ -13,7 +13,7 @@ import sys
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 BLOCK = re.compile(r"(<!-- keys (\w+) ?(\S*) -->\n).*?(<!-- end of keys -->)", re.S)
-LISTS_OF_OPTIONS = "swept_method"  # the options of "method" once more, each also as a list
+AGAIN = {"swept_method", "plane_mesh"}  # what has a table already: options as lists, meshes that are drawn out
 
 
 class Tables:
@@ -43,33 +43,28 @@ class Tables:
         for alternative in node.get("anyOf", []):
             yield from self.children(alternative)
 
-    def rows(self, path, node, prefix="", within=()):
-        """(key, schema, when required) of all below a path. `within`: definitions that hold it; what is one of them
-        again, as the mesh that is drawn out by a mesh, is not entered."""
+    def rows(self, path, node, prefix=""):
+        """(key, schema, when required) of all below a path."""
         for name, inner, required in self.children(node):
             inner, definition = self.resolved(inner)
             for each in [inner] if name in node.get("properties", {}) else [inner, *inner.get("anyOf", [])]:
                 if "description" in each:
                     yield prefix + name, each, required
             below = f"{path}/{name}".lstrip("/")
-            own = below in self.own or f"$defs/{definition}" in self.own
-            if not own and definition != LISTS_OF_OPTIONS and (definition is None or definition not in within):
-                yield from self.rows(below, inner, f"{prefix}{name}/", (*within, definition))
+            if below not in self.own and definition not in AGAIN and f"$defs/{definition}" not in self.own:
+                yield from self.rows(below, inner, f"{prefix}{name}/")
 
     def at(self, path):
-        """The node at a path, and the definition that it refers to."""
         if path.startswith("$defs/"):
-            definition = path.removeprefix("$defs/")
-            return self.resolved(self.schema["$defs"][definition])[0], definition
-        node, definition = self.schema, None
+            return self.resolved(self.schema["$defs"][path.removeprefix("$defs/")])[0]
+        node = self.schema
         for part in path.split("/") if path else []:
-            node, definition = self.resolved(next(inner for name, inner, _ in self.children(node) if name == part))
-        return node, definition
+            node = self.resolved(next(inner for name, inner, _ in self.children(node) if name == part))[0]
+        return node
 
     def table(self, path):
         lines = []  # neighbours of one object that differ in their names alone share a line
-        at, definition = self.at(path)
-        for key, node, required in self.rows(path, at, within=(definition,)):
+        for key, node, required in self.rows(path, self.at(path)):
             cells = [kind(node), standard(node, required), node["description"], example(key, node)]
             object_, _, name = f"{path}/{key}".strip("/").rpartition("/")
             if lines and lines[-1][0] == object_ and lines[-1][2][:3] == cells[:3]:
@@ -167,7 +162,8 @@ def compare(pages, schemas):
     new = {path: BLOCK.sub(lambda m: m.group(1) + tables[m.group(2)].table(m.group(3)) + m.group(4), text)
            for path, text in pages.items()}
     wrong = [f"{path}: its tables are not those of the schema" for path in pages if new[path] != pages[path]]
-    own_parts = {"scene": schemas["scene"], "study": {**schemas["study"], "$defs": {}}}
+    of_scene = {name: node for name, node in schemas["scene"]["$defs"].items() if name not in AGAIN}
+    own_parts = {"scene": {**schemas["scene"], "$defs": of_scene}, "study": {**schemas["study"], "$defs": {}}}
     wrong += [f"the key {name} of a {file} is in no table" for file, parts in own_parts.items()
               for name, node in described(parts) if id(node) not in tables[file].shown]
     return new, wrong

@@ -55,6 +55,7 @@ Schema scene_schema() {
   Schema definitions = Schema::parse(schema_texts::common);
   definitions.update(Schema::parse(schema_texts::motion));
   definitions["mesh"] = mesh_schema();
+  definitions["plane_mesh"] = plane_mesh_schema();
   definitions["material"] = one_of(material_kinds());
   definitions["response"] = response_schema();
   definitions["method"] = method_schema(OptionLists::refused);

@@ -159,7 +159,7 @@ nlohmann::ordered_json kind_of(const Number& standard, const EndOfTurn<S>&) {
 }
 inline nlohmann::ordered_json kind_of(int, const Count&) { return {{"$ref", "#/$defs/count"}}; }
 inline nlohmann::ordered_json kind_of(const std::array<int, 2>&, const Counts&) { return {{"$ref", "#/$defs/cells"}}; }
-inline nlohmann::ordered_json kind_of(const PlaneMesh&, const MeshInPlane&) { return {{"$ref", "#/$defs/mesh"}}; }
+inline nlohmann::ordered_json kind_of(const PlaneMesh&, const MeshInPlane&) { return {{"$ref", "#/$defs/plane_mesh"}}; }
 inline nlohmann::ordered_json kind_of(const std::vector<int>&, const Counts&) {
   return {{"$ref", "#/$defs/cells_of_axes"}};
 }
@@ -177,6 +177,11 @@ template <class How>
 nlohmann::ordered_json kind_of(const std::vector<Number>&, const How&) {
   return {{"$ref", "#/$defs/vector"}};
 }
+inline nlohmann::ordered_json three_numbers() {
+  return {{"title", "[x, y, z]"}, {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+}
+inline nlohmann::ordered_json kind_of(const std::vector<Number>&, const Place3D&) { return three_numbers(); }
+inline nlohmann::ordered_json kind_of(const std::vector<Number>&, const Direction3D&) { return three_numbers(); }
 inline nlohmann::ordered_json kind_of(bool standard, const Flag&) {
   return {{"type", "boolean"}, {"default", standard}};
 }

@@ -169,6 +169,18 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
   return from_file ? read_gmsh(node, mesh, reading) : generator->read(mesh, reading);
 }
 
+Schema plane_mesh_schema() {
+  Schema properties = Schema::object();
+  const auto add = [&]<std::size_t... i>(std::index_sequence<i...>) {
+    ((properties[std::variant_alternative_t<i, PlaneMesh>::key] =
+          schema_of_object<std::variant_alternative_t<i, PlaneMesh>>()),
+     ...);
+  };
+  add(std::make_index_sequence<std::variant_size_v<PlaneMesh>>());
+  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
+          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", properties}};
+}
+
 Schema mesh_schema() {
   Schema properties = Schema::object(), one = Schema::array();
   for (const auto& kind : mesh_kinds) {

@@ -11,7 +11,8 @@ namespace stickslip {
 /// The "mesh" of a body; none where it is at fault. Faults are reported.
 std::optional<MeshDescription> read_mesh(const JsonNode&, SceneReading&);
 
-/// JSON Schema of the "mesh" of a body.
+/// JSON Schema of the "mesh" of a body; of one that is drawn out into space.
 nlohmann::ordered_json mesh_schema();
+nlohmann::ordered_json plane_mesh_schema();
 
 }  // namespace stickslip

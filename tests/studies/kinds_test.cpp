@@ -11,12 +11,13 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
-/// What a kind reads from the example of its schema, with the numbers of the scene.
+/// What a kind reads from the example of its schema in a space, with the numbers of the scene.
 template <class Kind>
-auto example_of(const Kind& kind, Numbers<double>& numbers) {
+auto example_of(const Kind& kind, Numbers<double>& numbers, Space space = Space::plane_strain) {
   Diagnostics diagnostics;
   MeshFiles none;
   SceneReading reading(diagnostics, {}, none);
+  reading.scene.space = space;
   const auto document = JsonDocument::of(kind.schema()["examples"][0], "example");
   const auto read = kind.read(JsonNode(document, diagnostics), reading);
   EXPECT_TRUE(read && !diagnostics.has_errors()) << kind.key;
@@ -85,23 +86,35 @@ TEST(Kinds, OfMaterialsHaveTheStressOfTheirEnergy) {
   }
 }
 
+/// Whether the gap of a surface grows along its normal at places of D coordinates.
+template <int D>
+void expect_normal(const RigidSurface& surface, const Numbers<double>& numbers) {
+  using Probe = Dual<D>;
+  Numbers<Probe> in_duals;
+  for (const double x : numbers.at_slot) in_duals.at_slot.emplace_back(x);
+  constexpr double places[3][3] = {{1.7, 2.3, -0.4}, {-0.2, 0.3, 0.8}, {0.4, -1.9, 2.6}};
+  for (const auto& place : places) {
+    const Vec<double, D> at = Eigen::Map<const Vec<double, D>>(place);
+    ASSERT_EQ(ambiguity(at, surface, numbers), nullptr);
+    Vec<Probe, D> x;
+    for (int i = 0; i < D; ++i) x[i] = Probe::seed(at[i], i);
+    const auto geometry = against_rigid<Probe>(x, surface, in_duals);
+    EXPECT_NEAR(value(geometry.gap), against_rigid<double>(at, surface, numbers).gap, rounding);
+    for (int i = 0; i < D; ++i) EXPECT_NEAR(geometry.gap.d[i], value(geometry.normal[i]), rounding) << i;
+    EXPECT_NEAR(values(geometry.normal).norm(), 1, rounding);
+  }
+}
+
 TEST(Kinds, OfSurfacesHaveTheNormalAlongWhichTheirGapGrows) {
-  using Probe = Dual<2>;
   for (const ObstacleKind& kind : obstacle_kinds()) {
     SCOPED_TRACE(kind.key);
     Numbers<double> numbers;
-    const RigidSurface surface = example_of(kind, numbers);
-    Numbers<Probe> in_duals;
-    for (const double x : numbers.at_slot) in_duals.at_slot.emplace_back(x);
+    const RigidSurface surface = example_of(kind, numbers, kind.is_in_plane ? Space::plane_strain : Space::solid);
     if (std::holds_alternative<Polyline>(surface)) continue;  // a place faces one of its facets
-    for (const auto& at : {Vec<double, 2>(1.7, 2.3), Vec<double, 2>(-0.2, 0.3), Vec<double, 2>(0.4, -1.9)}) {
-      ASSERT_EQ(ambiguity(at, surface, numbers), nullptr);
-      const Vec<Probe, 2> x(Probe::seed(at[0], 0), Probe::seed(at[1], 1));
-      const auto geometry = against_rigid<Probe>(x, surface, in_duals);
-      EXPECT_NEAR(value(geometry.gap), against_rigid<double>(at, surface, numbers).gap, rounding);
-      for (int i = 0; i < 2; ++i) EXPECT_NEAR(geometry.gap.d[i], value(geometry.normal[i]), rounding) << i;
-      EXPECT_NEAR(std::hypot(value(geometry.normal[0]), value(geometry.normal[1])), 1, rounding);
-    }
+    if (kind.is_in_plane)
+      expect_normal<2>(surface, numbers);
+    else
+      expect_normal<3>(surface, numbers);
   }
 }
 

@@ -68,16 +68,51 @@ const char* const finite_scene = R"({
   "method": {"monolithic_al": {}}
 })";
 
+const char* const solid_scene = R"({
+  "space": "solid", "strain": "finite",
+  "bodies": {"block": {"mesh": {"box": {"min": [0, 0, 0], "max": [4, 2, 2], "cells": [4, 2, 2]}},
+                       "element": "H8", "material": {"neo_hookean": {"E": 1000, "nu": 0.25}}}},
+  "obstacles": {"floor": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}},
+  "contacts": {"sole": {"slave": "block.bottom", "master": "floor", "discretization": "node"}},
+  "supports": [{"on": "block.top", "move": {"x": 0, "y": 0, "z": -0.1}}],
+  "time": {"end": 1, "steps": 2},
+  "method": {"monolithic_al": {}}
+})";
+
+/// What solid bodies in space do not know yet, and what is of the plane alone.
+std::vector<Broken> broken_solid() {
+  const char *s = solid_scene, *plane = R"("plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}})";
+  return {
+      {"solid_friction_on_a_sphere", s, R"({"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}},
+  "contacts": {"sole": {"slave": "block.bottom", "master": "floor", )",
+       R"({"sphere": {"center": [2, 1, -5], "radius": 5}}},
+  "contacts": {"sole": {"slave": "block.bottom", "master": "floor", @"friction": 0.3, )",
+       "/contacts/sole/friction", "needs small strain"},
+      {"solid_obstacle_that_rotates", s, plane,
+       R"("plane": {"point": [0, 0, 0], "normal": [0, 0, 1]},
+                   @"rotate": {"center": [0, 0, 0], "axis": [0, 0, 1], "angle": 3}})",
+       "/obstacles/floor/rotate", "rotate the bodies by their supports"},
+      {"solid_segments", s, R"("discretization": "node")", R"("discretization": @"segment")",
+       "/contacts/sole/discretization", R"(allowed in the space solid: "node")"},
+      {"solid_master_that_deforms", s, R"("master": "floor")", R"("master": @"block.left")", "/contacts/sole/master",
+       "the master must be an obstacle: floor"},
+      {"solid_element_of_the_plane", s, R"("H8")", R"(@"Q4")", "/bodies/block/element", "H8, H8_mean_dilatation or T4"},
+      {"solid_mesh_of_the_plane", s, R"({"box": {"min": [0, 0, 0], "max": [4, 2, 2], "cells": [4, 2, 2]}})",
+       R"({@"half_disk": {"center": [0, 0], "radius": 1, "cells": [4, 4]}})", "/bodies/block/mesh/half_disk",
+       "allowed: box, extruded, point, line, arc"},
+      {"solid_cells_of_the_plane", s, R"([4, 2, 2]}})", R"(@[4, 2]}})", "/bodies/block/mesh/box/cells",
+       "an array of 3 whole numbers >= 1"},
+      {"extruded_in_the_plane", finite_scene, R"({"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}})",
+       R"(@{"extruded": {"mesh": {"box": {"min": [0, 0], "max": [1, 1], "cells": [1, 1]}}, "from": 0, "to": 1,
+                        "cells": 1}})",
+       "/bodies/block/mesh", "needs the space solid"},
+  };
+}
+
 /// What finite strain does not know yet, and what does not go with it.
 std::vector<Broken> broken_finite() {
   const char* f = finite_scene;
   return {
-      {"finite_solid",
-       R"({"space": "solid", "strain": "small", "time": {"end": 1, "steps": 1}, "method": {"penalty": {}},
-           "bodies": {"a": {"mesh": {"point": {"at": [0, 0, 0]}},
-           "material": {"grounded_spring": {"stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}}}},
-           "obstacles": {"o": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}}})",
-       R"("small")", R"(@"finite")", "/strain", R"(needs a space "plane_strain", "plane_stress" or "axisymmetric")"},
       {"finite_averaged_plane_stress", f, R"("strain": "finite",
   "bodies": {"block": {)",
        R"("space": "plane_stress", "strain": "finite",
@@ -126,7 +161,7 @@ std::vector<Broken> broken_bodies() {
       {"neo_hookean_at_small_strain", b, R"("linear_elastic": {"E": 1000, "nu": 0.25})",
        R"(@"neo_hookean": {"E": 1000, "nu": 0.25})", "/bodies/block/material/neo_hookean", "at small strain"},
       {"bodies_list", b, R"("element": "Q4")", R"("element": @4)", "/bodies/block/element",
-       "must be one of Q4, Q4_mean_dilatation, Q8, T3, T6, bar, point"},
+       "must be one of Q4, Q4_mean_dilatation, Q8, T3, T6, H8, H8_mean_dilatation, T4, bar, point"},
       {"bar_in_a_box", b, R"("element": "Q4")", R"("element": @"bar")", "/bodies/block/element",
        "a box has elements Q4, Q4_mean_dilatation, Q8, T3 or T6, not bar"},
       {"area_of_a_box", b, R"("element": "Q4")", R"(@"area": 2)", "/bodies/block/area", "only bars"},
@@ -229,7 +264,7 @@ std::vector<Broken> broken_contacts() {
       {"normal_in_space", b, R"("normal": [0, 2])", R"("normal": @[0, 0, 1])", "/obstacles/floor/plane/normal",
        "must be an array of 2 numbers"},
       {"sphere", b, floor_plane, R"({@"sphere": {}})", "/obstacles/floor/sphere",
-       "is not available in this version; allowed: plane, circle, polyline"},
+       "needs the space solid; allowed in a plane space: plane, circle, polyline"},
       {"radius_of_zero", b, floor_plane, R"({"circle": {"center": [0, 0], "radius": @0}})",
        "/obstacles/floor/circle/radius", "must be a number > 0"},
       {"inside_of_one", b, floor_plane, R"({"circle": {"center": [0, 0], "radius": 1, "inside": @1}})",
@@ -606,6 +641,7 @@ std::string name_of_case(const testing::TestParamInfo<Broken>& info) { return in
 
 INSTANTIATE_TEST_SUITE_P(Bodies, BrokenScene, testing::ValuesIn(broken_bodies()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Finite, BrokenScene, testing::ValuesIn(broken_finite()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Solid, BrokenScene, testing::ValuesIn(broken_solid()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Contacts, BrokenScene, testing::ValuesIn(broken_contacts()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Loading, BrokenScene, testing::ValuesIn(broken_loading()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Responses, BrokenScene, testing::ValuesIn(broken_responses()), name_of_case);

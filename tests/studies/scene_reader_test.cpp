@@ -89,7 +89,7 @@ TEST(SceneReader, ReadsABlockOnAFloor) {
   const auto& box = std::get<BoxMesh>(scene.bodies[0].mesh);
   EXPECT_EQ(box.max[0].value, 4);
   EXPECT_EQ(box.max[1].value, 2);
-  EXPECT_EQ(box.cells, (std::array{4, 2}));
+  EXPECT_EQ(box.cells, (std::vector{4, 2}));
   EXPECT_EQ(scene.bodies[0].element, "Q4");
   EXPECT_EQ(std::get<LinearElastic>(scene.bodies[0].material).nu.value, 0.25);
   const auto& plane = std::get<Plane>(scene.obstacles.at(0).shape);

@@ -90,13 +90,28 @@ std::vector<json> rich_scenes() {
     "time": {"legs": [[1, 2]]},
     "method": {"uzawa_al": {"newton": {}}}
   })";
+  const char* solids = R"({
+    "space": "solid",
+    "bodies": {"block": {"mesh": {"box": {"min": [0, 0, 0], "max": [2, 2, 1], "cells": [2, 2, 1], "grade": {"front": 2}}},
+                         "element": "T4", "material": {"linear_elastic": {"E": 1, "nu": 0}}},
+               "tube": {"mesh": {"extruded": {"mesh": {"ring": {"center": [5, 0], "inner": 1, "outer": 2, "cells": [1, 8]}},
+                                              "from": 0, "to": 1, "cells": 1}},
+                        "material": {"j2_plastic": {"E": 1, "nu": 0, "yield": 1, "hardening": 1}}}},
+    "obstacles": {"ball": {"sphere": {"center": [1, 1, -1], "radius": 1, "inside": false}},
+                  "drum": {"cylinder": {"point": [5, 0, -1], "axis": [0, 1, 0], "radius": 1, "inside": false}}},
+    "contacts": {"under": {"slave": "block.bottom", "master": "ball", "friction": 0.1},
+                 "below": {"slave": "tube.front", "master": "drum"}},
+    "loads": [{"on": "block.top", "pressure": 1}, {"on": "tube", "body_force": [0, 0, -1]}],
+    "time": {"end": 1, "steps": 1},
+    "method": {"penalty": {}}
+  })";
   const char* monolithic = R"({"bodies": {"rod": {"mesh": {"line": {"from": [0, 9], "to": [1, 9], "cells": 2}},
     "material": {"linear_elastic": {"E": 1, "nu": 0}}}}, "time": {"end": 1, "steps": 1},
     "method": {"monolithic_al": {"newton": {"line_search": true}}}})";
   const char* finite = R"({"strain": "finite", "bodies": {"block": {
     "mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}}, "material": {"neo_hookean": {"E": 1, "nu": 0}}}},
     "time": {"end": 1, "steps": 1}, "method": {"monolithic_al": {}}})";
-  return {json::parse(plane), json::parse(space), json::parse(monolithic), json::parse(finite)};
+  return {json::parse(plane), json::parse(space), json::parse(solids), json::parse(monolithic), json::parse(finite)};
 }
 
 /// Faults of a scene as the reader finds them.
@@ -342,7 +357,7 @@ TEST(Schema, RefusesASampleOfWhatTheReaderRefuses) {
       {"/bodies/block/material", "{}"},
       {"/bodies/block/mesh/box/cells", "[4]"},
       {"/bodies/block/mesh/box/cells/0", "0"},
-      {"/bodies/block/mesh/box/max", "[4, 2, 1]"},
+      {"/bodies/block/mesh/box/max", "[4]"},
       {"/bodies/block/element", R"("Q5")"},
       {"/bodies/rod/area", "0"},
       {"/obstacles/drum/circle/radius", "0"},

@@ -574,7 +574,7 @@ TEST(Descriptions, ThatMakeNoMeshAreRefusedWithAReason) {
     EXPECT_THROW(make_mesh(description, element, dimension), std::invalid_argument);
   };
   expect_fault(box(), "bar", 2, "T3 or T6, not bar");
-  expect_fault(box(), "Q4", 3, "plane");
+  expect_fault(box(), "Q4", 3, "one number an axis, 3");
   BoxMesh bad = box();
   bad.max[1] = -0.5;
   expect_fault(bad, "Q4", 2, "greater than min");
