@@ -8,7 +8,7 @@ bash tools/install_dependencies.sh web
 # shellcheck source=tools/environment.sh
 . tools/environment.sh
 
-echo "play.sh: builds the page; from nothing this takes some about 7 minutes on two cores"
+echo "play.sh: builds the page; from nothing this takes about 7 minutes on two cores"
 cmake --preset wasm
 cmake --build --preset wasm -j "$jobs"
 echo "The page: $PWD/build/wasm/stickslip.html"

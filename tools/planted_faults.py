@@ -71,7 +71,7 @@ FAULTS = [
     ("dissipation forgets the steps before", "core/model/contact_assembly.hpp", "Vector<T> work = <<<before>>>;",
      "Vector<T>::Constant(before.size(), T(0)).eval()"),
     ("circle without the derivative of its radius", "core/contact/circle.hpp",
-     "sign * (first - <<<numbers(round.radius)>>> + twice", "T(value(numbers(round.radius)))"),
+     "moved, T(<<<numbers(round.radius)>>>), round.inside", "value(numbers(round.radius))"),
     ("facet's weights without their derivative", "core/contact/surfaces.hpp",
      "g.weights << T(1), <<<xi - T(1)>>>, -xi;", "T(value(xi) - 1)"),
     ("node on a node without its mean derivative", "core/contact/surfaces.hpp", "const T half = T(<<<0.5>>>)", "0.0"),

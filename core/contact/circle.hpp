@@ -26,21 +26,32 @@ struct Circle {
 
 namespace detail {
 
-/// Geometry of the place X + w against a circle or a sphere. With D from the centre to X, the distance grows by |D + w| -
-/// |D| = (2 D + w).w / (|D + w| + |D|), which keeps the digits of w. Singular where X is the centre.
-template <class T, class Start, class Motion, class Round, class Read>
-PointGeometry<T> against_round(const Start& X, const Motion& w, const Round& round, const Read& numbers) {
-  const int dimension = static_cast<int>(round.center.size());
-  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(dimension), D(dimension);
+/// Geometry of a place against a circle, a sphere or a cylinder: D is the arm from the centre, or from the axis and
+/// across it, to the place of the start, w its displacement likewise. The distance grows by
+/// |D + w| - |D| = (2 D + w).w / (|D + w| + |D|), which keeps the digits of w. Singular where D is zero.
+template <class T, class Vector>
+PointGeometry<T> against_round(const Vector& D, const Vector& w, const T& radius, bool inside) {
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(D.size());
   T twice{};
-  for (int i = 0; i < dimension; ++i) {
-    D[i] = X[i] - numbers(round.center[i]);
+  for (Eigen::Index i = 0; i < D.size(); ++i) {
     n[i] = D[i] + w[i];
     twice += (D[i] + n[i]) * w[i];
   }
-  const T first = norm(D), distance = norm(n), sign(round.inside ? -1.0 : 1.0);
-  for (int i = 0; i < dimension; ++i) n[i] *= sign / distance;
-  return rigid<T>(sign * (first - numbers(round.radius) + twice / (distance + first)), n);
+  const T first = norm(D), distance = norm(n), sign(inside ? -1.0 : 1.0);
+  for (Eigen::Index i = 0; i < D.size(); ++i) n[i] *= sign / distance;
+  return rigid<T>(sign * (first - radius + twice / (distance + first)), n);
+}
+
+/// The same with a centre.
+template <class T, class Start, class Motion, class Round, class Read>
+PointGeometry<T> against_centred(const Start& X, const Motion& w, const Round& round, const Read& numbers) {
+  const auto axes = static_cast<Eigen::Index>(round.center.size());
+  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> D(axes), moved(axes);
+  for (Eigen::Index i = 0; i < axes; ++i) {
+    D[i] = X[i] - numbers(round.center[i]);
+    moved[i] = w[i];
+  }
+  return against_round<T>(D, moved, T(numbers(round.radius)), round.inside);
 }
 
 }  // namespace detail
@@ -48,7 +59,7 @@ PointGeometry<T> against_round(const Start& X, const Motion& w, const Round& rou
 /// Geometry of the place X + w; arguments as of a plane.
 template <class T, class Start, class Motion, class Read>
 PointGeometry<T> against(const Start& X, const Motion& w, const Circle& circle, const Read& numbers) {
-  return detail::against_round<T>(X, w, circle, numbers);
+  return detail::against_centred<T>(X, w, circle, numbers);
 }
 
 /// The key of the surface that is wrong where x has no nearest place on it; nullptr where x has one.

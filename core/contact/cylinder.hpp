@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/algebra/described.hpp"
-#include "core/contact/point_geometry.hpp"
+#include "core/contact/circle.hpp"
 
 namespace stickslip {
 
@@ -51,12 +51,7 @@ PointGeometry<T> against(const Start& X, const Motion& w, const Cylinder& cylind
     start[i] = X[i] - numbers(cylinder.point[i]);
     motion[i] = w[i];
   }
-  const Vec<T, 3> D = across(start), moved = across(motion), now = D + moved;
-  const T first = norm(D), distance = norm(now), sign(cylinder.inside ? -1.0 : 1.0);
-  const T change = dot(Vec<T, 3>(D + now), moved) / (distance + first);
-  Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> n(3);
-  for (int i = 0; i < 3; ++i) n[i] = now[i] * sign / distance;
-  return detail::rigid<T>(sign * (first - numbers(cylinder.radius) + change), n);
+  return detail::against_round<T>(across(start), across(motion), T(numbers(cylinder.radius)), cylinder.inside);
 }
 
 /// The key of the surface that is wrong where x has no nearest place on it; nullptr where x has one.

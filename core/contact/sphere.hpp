@@ -27,7 +27,7 @@ struct Sphere {
 /// Geometry of the place X + w; arguments as of a plane.
 template <class T, class Start, class Motion, class Read>
 PointGeometry<T> against(const Start& X, const Motion& w, const Sphere& sphere, const Read& numbers) {
-  return detail::against_round<T>(X, w, sphere, numbers);
+  return detail::against_centred<T>(X, w, sphere, numbers);
 }
 
 /// The key of the surface that is wrong where x has no nearest place on it; nullptr where x has one.

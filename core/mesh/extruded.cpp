@@ -13,8 +13,8 @@ namespace {
 /// The element of the plane mesh that an element of space is made of.
 std::string plane_element(const std::string& element) { return element == "T4" ? "T3" : "Q4"; }
 
-/// The three tetrahedra of the prism on a triangle, corners counter-clockwise, whose nodes above have numbers greater by
-/// `layer`.
+/// The three tetrahedra of the prism on a triangle, corners counter-clockwise. The nodes above have numbers that are
+/// greater by `layer`.
 void append_prism(Mesh& mesh, std::array<int, 3> at, int layer) {
   bool odd = false;
   for (const auto& [i, j] : {std::pair{0, 1}, {1, 2}, {0, 1}})

@@ -8,8 +8,8 @@ namespace stickslip {
 namespace {
 
 /// A cell of space, as one hexahedron, or as six tetrahedra around its diagonal from corner 0 to corner 6. `mirrored`:
-/// along which directions the cell is turned over before, so that the diagonals of cells that share a face agree, and no
-/// direction is preferred.
+/// along which directions the cell is turned over before. Neighbours are turned over in turn, so the diagonals of a face
+/// that they share agree, and no direction is preferred.
 void append_block(Mesh& mesh, const std::array<int, 8>& n, const std::array<bool, 3>& mirrored) {
   if (mesh.shape == ElementShape::hex8) {
     mesh.connectivity.insert(mesh.connectivity.end(), n.begin(), n.end());

@@ -16,8 +16,8 @@ inline constexpr std::array grid_sides{"left", "right", "bottom", "top"};
 
 Mesh grid(const std::array<int, 2>& cells, const std::string& element);
 
-/// A block of cells in space. Node (i, j, k) has number (k (cells[1] + 1) + j) (cells[0] + 1) + i; sides left right along
-/// the first direction, front back along the second, bottom top along the third.
+/// A block of cells in space. Node (i, j, k) has number (k (cells[1] + 1) + j) (cells[0] + 1) + i. Sides: left right
+/// along the first direction, front back along the second, bottom top along the third.
 Mesh grid(const std::array<int, 3>& cells, const std::string& element);
 
 /// Fractions along one axis; cells grow away from the side `low` or `high` if that is the one they are graded towards.

@@ -31,9 +31,9 @@ bool is_solid(ElementShape);
 const std::vector<std::vector<int>>& sides_of(ElementShape);
 
 /// Named part of the boundary: its nodes, in order along the side where it is a curve, and its facets. In the plane a
-/// facet is a pair of nodes, directed so that the solid lies on the LEFT of a -> b (counter-clockwise boundary); in space
-/// it is a face of three or four nodes, counter-clockwise seen from outside. Facets may be empty (a corner, a point).
-/// Sides of quadratic elements are two facets each, and are listed whole in `quadratic`.
+/// facet is a pair of nodes, directed so that the solid lies on the LEFT of a -> b (counter-clockwise boundary); in
+/// space it is a face of three or four nodes, counter-clockwise seen from outside. Facets may be empty (a corner, a
+/// point). Sides of quadratic elements are two facets each, and are listed whole in `quadratic`.
 struct Side {
   std::vector<int> nodes;
   std::vector<std::vector<int>> facets;

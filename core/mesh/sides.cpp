@@ -100,41 +100,38 @@ Side apply(const Mesh& mesh, const SideExpression& expression) {
 
 }  // namespace
 
-Side boundary_of(const Mesh& mesh) {
-  const int nodes = nodes_of(mesh.shape);
-  const auto facet_of = [&](int e, const std::vector<int>& side) {
-    std::vector<int> facet;
-    for (const int a : side) facet.push_back(mesh.connectivity[static_cast<std::size_t>(e) * nodes + a]);
-    return facet;
+std::vector<ElementSide> free_sides(const Mesh& mesh) {
+  const int count = nodes_of(mesh.shape);
+  std::map<std::vector<int>, int> elements_at;  // by the nodes of a side, ascending
+  const auto key_of = [](std::vector<int> nodes) {
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
   };
+  std::vector<ElementSide> sides;
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (const auto& side : sides_of(mesh.shape)) {
+      sides.push_back({e, {}});
+      for (const int a : side) sides.back().nodes.push_back(mesh.connectivity[static_cast<std::size_t>(e) * count + a]);
+      ++elements_at[key_of(sides.back().nodes)];
+    }
+  std::erase_if(sides, [&](const ElementSide& side) { return elements_at.at(key_of(side.nodes)) > 1; });
+  return sides;
+}
+
+Side boundary_of(const Mesh& mesh) {
+  const auto sides = free_sides(mesh);
   if (is_solid(mesh.shape)) {
-    std::map<std::vector<int>, int> elements_at;  // by the nodes of a face, ascending
-    const auto for_each_face = [&](auto&& f) {
-      for (int e = 0; e < mesh.element_count(); ++e)
-        for (const auto& face : sides_of(mesh.shape)) {
-          const auto facet = facet_of(e, face);
-          auto key = facet;
-          std::sort(key.begin(), key.end());
-          f(facet, key);
-        }
-    };
-    for_each_face([&](const auto&, const auto& key) { ++elements_at[key]; });
     Side side;
     std::set<int> ascending;
-    for_each_face([&](const auto& facet, const auto& key) {
-      if (elements_at.at(key) > 1) return;
-      side.facets.push_back(facet);
-      ascending.insert(facet.begin(), facet.end());
-    });
+    for (const auto& [element, nodes] : sides) {
+      side.facets.push_back(nodes);
+      ascending.insert(nodes.begin(), nodes.end());
+    }
     side.nodes.assign(ascending.begin(), ascending.end());
     return side;
   }
   std::map<std::pair<int, int>, std::vector<int>> edges;  // start and end -> start, end (, middle)
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (const auto& local : sides_of(mesh.shape)) {
-      const auto edge = facet_of(e, local);
-      if (edges.erase({edge[1], edge[0]}) == 0) edges.emplace(std::pair{edge[0], edge[1]}, edge);
-    }
+  for (const auto& [element, nodes] : sides) edges.emplace(std::pair{nodes[0], nodes[1]}, nodes);
   Side side;
   std::map<int, std::vector<int>> by_start;
   for (const auto& [ends, edge] : edges) by_start.emplace(ends.first, edge);

@@ -39,8 +39,16 @@ Side evaluate_side(const Mesh&, const SideExpression&);
 /// The same of a text; in it a side may also stand without a body's name: "left".
 Side evaluate_side(const Mesh&, const std::string& expression);
 
-/// All sides of elements of a continuum that only one element has. In the plane one loop after another, the solid on
-/// their left; in space in the order of the elements, nodes ascending.
+/// A side of an element: the element, and the nodes in the order of sides_of().
+struct ElementSide {
+  int element;
+  std::vector<int> nodes;
+};
+/// All sides of elements of a continuum that only one element has, in the order of the elements.
+std::vector<ElementSide> free_sides(const Mesh&);
+
+/// The same as one side. In the plane one loop after another, the solid on their
+/// left; in space nodes ascending.
 Side boundary_of(const Mesh&);
 
 /// The candidate with the least edit distance to the name (the first of equals); "" if there is none.

@@ -82,8 +82,8 @@ void add_body_force(const Model& model, const Load& load, int b, const Slots<T>&
   }
 }
 
-/// Forces of a pressure on a side of an element at its nodes' places, dimension x nodes. `loaded`: nodes that it acts on.
-/// `pressure_at`: by point of the side's quadrature.
+/// Forces of a pressure on a side of an element at its nodes' places, dimension x nodes. `loaded`: nodes that it acts
+/// on. `pressure_at`: by point of the side's quadrature.
 template <class T, class Pressure>
 Points<T> pressure_on(const Points<T>& places, const std::vector<char>& loaded, const Depth<T>& depth,
                       Pressure&& pressure_at) {
@@ -207,8 +207,8 @@ void visit_follower_tangents(const Model& model, const Slots<T>& slots, const Bo
 
 }  // namespace detail
 
-/// Calls sink(nodes, K) for each side of an element that a pressure follows: derivatives of its forces by displacements,
-/// node-major. In plane stress it calls again with the part that the stretch of the thickness adds.
+/// Calls sink(nodes, K) for each side of an element that a pressure follows: derivatives of its forces by
+/// displacements, node-major. In plane stress it calls again with the part that the stretch of the thickness adds.
 template <class T, class Sink>
 void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, Sink&& sink) {
   with_dimension(model.dimension, [&]<int D>() { detail::visit_follower_tangents<D>(model, slots, at, sink); });

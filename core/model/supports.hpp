@@ -41,7 +41,7 @@ Vector<T> displacement_per_degree(const Rotation& rotation, const Place& x, cons
   return across_axis(rotation, arm, numbers);
 }
 
-/// A rotation in the plane by a finite angle.
+/// A rotation by a finite angle; change() is of one in the plane.
 template <class T>
 struct Turn {
   T sine, cosine_less_one;  ///< the latter without cancellation at small angles

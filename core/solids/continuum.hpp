@@ -1,12 +1,11 @@
-/// The continuum's gradients at the quadrature points of an element of any shape, in the plane, of revolution or in space,
-/// with or without mean dilatation:
+/// The continuum's gradients at the quadrature points of an element of any shape, in the plane, of revolution or in
+/// space, with or without mean dilatation:
 ///
 ///   H_pq = B_pq,ia u_ia        dV
 ///
-/// H is the displacement gradient. In the plane B_pq,ia = delta_ip dN_a/dX_q, and dV is area
-/// times thickness; in space dV is a volume. Of revolution (X_0 = r, X_1 axial) the hoop strain H_22 = u_r / r joins them, and dV is area times
-/// the circumference 2 pi r. With mean dilatation, at small strain, the trace of H is replaced by its mean over the
-/// element,
+/// H is the displacement gradient. In the plane and in space B_pq,ia = delta_ip dN_a/dX_q; dV is area times thickness,
+/// or a volume. Of revolution (X_0 = r, X_1 axial) the hoop strain H_22 = u_r / r joins them, and dV is area times the
+/// circumference 2 pi r. With mean dilatation, at small strain, the trace of H is replaced by its mean over the element,
 ///
 ///   H -> H + (theta - tr H)/3 I,   theta = int tr H dV / V,
 ///

@@ -1,5 +1,5 @@
-/// Integrals over the sides of elements, edges in the plane and faces in space: consistent shares of areas and loads, in
-/// any scalar.
+/// Integrals over the sides of elements, edges in the plane and faces in space: consistent shares of areas and loads,
+/// in any scalar.
 #pragma once
 
 #include <array>

@@ -17,6 +17,7 @@
 /// with a weight b: W = sum_n sum_q (A_n : P V_q + b_n . h). It is differentiated by motion and memory too.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/solids/elements.hpp"
@@ -124,37 +125,50 @@ void add_by_gradient(const StateOfElement<Shape>& state, const Tensor<double, la
     by.exchange += P.full().trace() * state.weight + Q.full().trace() * state.motion;
 }
 
-/// The derivatives of the work of an element with mean dilatation at finite strain: the Dual of the whole element.
+/// The derivatives of the work of an element with mean dilatation at finite strain, by the Dual of the whole element. Its
+/// inputs are coordinates, depth and the law's numbers, and of a law that remembers motion and last memory. They are
+/// seeded in turns: a dual number of all that a hexahedron has takes minutes to compile.
 template <class Shape, Kinematics kinematics, class Law>
 auto averaged_work(const Law& law, const Nodal<double, Shape>& coordinates, double depth,
                    const std::vector<StateOfElement<Shape>>& states) {
+  const auto numbers = law.numbers();
   constexpr int dofs = dofs_of<Shape>, count = static_cast<int>(std::tuple_size_v<decltype(law.numbers())>);
   constexpr int memory = points_of<Shape>(kinematics) * memory_at<Law, kinematics>();
   constexpr int at_motion = dofs + 1 + count, at_memory = at_motion + dofs;
-  constexpr int inputs = memory > 0 ? at_memory + memory : at_motion;
-  using Probe = Dual<inputs>;
-  Nodal<Probe, Shape> X;
-  for (int k = 0; k < dofs; ++k) X.data()[k] = Probe::seed(coordinates.data()[k], k);
-  const auto probed = law.with(seeded_numbers<Probe>(law, dofs + 1));
+  constexpr int inputs = memory > 0 ? at_memory + memory : at_motion, at_once = std::min(inputs, 40);
+  using Probe = Dual<at_once>;
   ElementWork<Shape, static_cast<std::size_t>(count)> out;
   for (const auto& state : states) {
-    Nodal<Probe, Shape> u;
-    Vec<Probe, memory> before, after;
-    for (int k = 0; k < dofs; ++k)
-      u.data()[k] = memory > 0 ? Probe::seed(state.motion.data()[k], at_motion + k) : Probe(state.motion.data()[k]);
-    for (int m = 0; m < memory; ++m) before[m] = Probe::seed(state.last_memory[m], at_memory + m);
-    const auto forces = averaged_forces<true, Probe, Shape, kinematics, Probe>(
-        probed, X, u, Probe::seed(depth, dofs), ElementMemory<Probe>(before.data(), state.branches), after.data());
-    Probe work(0.0);
-    for (int k = 0; k < dofs; ++k) work += state.weight.data()[k] * forces.data()[k];
-    for (int m = 0; m < memory; ++m) work += state.memory[m] * after[m];
-    for (int k = 0; k < dofs; ++k) out.coordinates.data()[k] += work.d[k];
-    out.depth += work.d[dofs];
-    for (int m = 0; m < count; ++m) out.law[m] += work.d[dofs + 1 + m];
+    Vec<double, inputs> by;
+    for (int first = 0; first < inputs; first += at_once) {
+      const auto input = [&](double x, int k) {
+        Probe probe(x);
+        if (k >= first && k < first + at_once) probe.d[k - first] = 1;
+        return probe;
+      };
+      Nodal<Probe, Shape> X, u;
+      std::array<Probe, static_cast<std::size_t>(count)> of_law;
+      Vec<Probe, memory> before, after;
+      for (int k = 0; k < dofs; ++k) {
+        X.data()[k] = input(coordinates.data()[k], k);
+        u.data()[k] = input(state.motion.data()[k], at_motion + k);
+      }
+      for (int m = 0; m < count; ++m) of_law[m] = input(numbers[m], dofs + 1 + m);
+      for (int m = 0; m < memory; ++m) before[m] = input(state.last_memory[m], at_memory + m);
+      const auto forces = averaged_forces<true, Probe, Shape, kinematics, Probe>(
+          law.with(of_law), X, u, input(depth, dofs), ElementMemory<Probe>(before.data(), state.branches),
+          after.data());
+      Probe work(0.0);
+      for (int k = 0; k < dofs; ++k) work += state.weight.data()[k] * forces.data()[k];
+      for (int m = 0; m < memory; ++m) work += state.memory[m] * after[m];
+      for (int k = first; k < std::min(first + at_once, inputs); ++k) by[k] = work.d[k - first];
+    }
+    for (int k = 0; k < dofs; ++k) out.coordinates.data()[k] += by[k];
+    out.depth += by[dofs];
+    for (int m = 0; m < count; ++m) out.law[m] += by[dofs + 1 + m];
     if constexpr (memory > 0) {
-      out.motion.emplace_back();
-      for (int k = 0; k < dofs; ++k) out.motion.back().data()[k] = work.d[at_motion + k];
-      out.last_memory.emplace_back(work.d.template segment<memory>(at_memory).matrix());
+      out.motion.emplace_back(by.template segment<dofs>(at_motion).reshaped(Shape::dimension, Shape::nodes));
+      out.last_memory.emplace_back(by.template segment<memory>(at_memory));
     }
   }
   return out;

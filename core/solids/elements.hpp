@@ -81,7 +81,7 @@ Nodal<T, Shape> averaged_forces(const Law& law, const Nodal<G, Shape>& coordinat
 
 }  // namespace detail
 
-/// Internal nodal forces, dimension x nodes. G, the scalar of the geometry, is T, or double where no derivative rides on it.
+/// Internal nodal forces, dimension x nodes. G, the scalar of the geometry, is T, or double if it has no derivative.
 /// `memory`: that the forces are at, of a law that remembers.
 template <class T, class Shape, Kinematics kinematics = plain_kinematics<Shape>, class G = T, class Law>
 Nodal<T, Shape> element_forces(const Law& law, const std::type_identity_t<Nodal<G, Shape>>& coordinates,

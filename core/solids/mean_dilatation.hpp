@@ -6,7 +6,8 @@
 /// P_bar is the stress of F_bar: of a material with an energy int W(F_bar) dV is the element's, and its tangent
 /// symmetric. It is the limit of small strain of continuum.hpp, and written in H = F - I, so that a small strain does
 /// not vanish beside one: F_bar - I = H + (a - 1) F. A quadrilateral of four nodes in plane strain, where F_bar_33 = a,
-/// and of revolution; a hexahedron of eight. An inverted element has strains that are not numbers. Source: [H80], [MOS90]
+/// and of revolution; a hexahedron of eight. An inverted element has strains that are not numbers. Source: [H80],
+/// [MOS90]
 #pragma once
 
 #include "core/solids/continuum.hpp"

@@ -142,20 +142,23 @@ void measure_multipliers(const ContactInput<T>& input, const Vector<T>& multipli
   const Model& model = input.model;
   // Where a body slides without pressure, its tractions are the rounding of its displacements.
   const bool presses = at.scales.traction > rounding_factor * unit_roundoff * sizes.elastic * largest_displacement;
-  for (std::size_t p = 0; p < model.points.size(); ++p)
-    for (int c = 0; c < model.points[p].components(); ++c) {
-      const int k = model.points[p].multiplier + c;
-      const double defect = std::abs(value(at.field.traction[k]) - value(multiplier[k]));
-      const ContactState state = at.field.state[p];
-      const bool is_length = c == 0 ? state != ContactState::open : state == ContactState::stick;
-      const double rho = value(c == 0 ? input.rho[p].normal : input.rho[p].tangential);
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    const ContactState state = at.field.state[p];
+    // `count` components from `first` on; of those along the surface the length, which does not depend on its frame
+    const auto measure = [&](int first, int count, bool is_length, const T& rho, double& worst) {
+      const double defect = root_of_squares(
+          count, [&](int c) { return value(at.field.traction[first + c]) - value(multiplier[first + c]); });
       const double traction_scale = at.scales.traction > 0 ? at.scales.traction : defect;  // all open, lambda not yet 0
-      const double relative = is_length ? ratio(defect / rho, at.scales.length)
+      const double relative = is_length ? ratio(defect / value(rho), at.scales.length)
                               : presses ? ratio(defect, traction_scale)
                                         : 0;
-      double& worst = c == 0 ? at.residuals.normal : at.residuals.tangential;
       worst = larger(worst, relative);
-    }
+    };
+    const bool sticks = state == ContactState::stick;
+    measure(point.multiplier, 1, state != ContactState::open, input.rho[p].normal, at.residuals.normal);
+    measure(point.multiplier + 1, point.tangents, sticks, input.rho[p].tangential, at.residuals.tangential);
+  }
 }
 
 }  // namespace detail

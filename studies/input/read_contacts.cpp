@@ -191,6 +191,20 @@ bool has_facets(const std::string& master, const SceneReading& reading) {
   return found == obstacles.end() || std::holds_alternative<Polyline>(found->shape);
 }
 
+/// What integration over segments does not go with. `is_solid`: the slave is a side of a solid body.
+void check_segments(const JsonNode& node, const Contact& contact, bool is_solid, bool of_itself,
+                    SceneReading& reading) {
+  if (reading.dimension() == 3)
+    node.error(R"(is "segment", which integrates along edges of the plane; allowed in the space solid: "node")");
+  if (of_itself && !reading.scene.finite_strain)
+    node.error(R"(is "segment", which a side takes against itself at finite strain alone; allowed: "node")");
+  if (contact.smoothing != Smoothing::none)
+    node.error(R"(is "segment", which integrates along straight facets; with a smooth surface: "node")");
+  if (!is_solid)
+    node.error("is \"segment\", which integrates along the facets of a solid body; the slave " +
+               in_quotes(contact.slave) + " has none; allowed: \"node\"");
+}
+
 void read_contact(const std::string& name, const JsonNode& node, SceneReading& reading) {
   const auto between = node.value().is_object() ? node.find("between") : std::nullopt;
   if (!node.is_object(
@@ -238,17 +252,8 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   const bool self = between && node.find("self") && node.find("self")->boolean().value_or(false);
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
-    if (contact.segment && reading.dimension() == 3)
-      discretization->error(
-          R"(is "segment", which integrates along edges of the plane; allowed in the space solid: "node")");
-    if (contact.segment && (between ? self : contact.is_of_itself()) && !reading.scene.finite_strain)
-      discretization->error(
-          R"(is "segment", which a side takes against itself at finite strain alone; allowed: "node")");
-    if (contact.segment && contact.smoothing != Smoothing::none)
-      discretization->error(R"(is "segment", which integrates along straight facets; with a smooth surface: "node")");
-    if (contact.segment && !is_solid)
-      discretization->error("is \"segment\", which integrates along the facets of a solid body; the slave " +
-                            shown(node.value()["slave"]) + " has none; allowed: \"node\"");
+    const bool of_itself = between ? self : contact.is_of_itself();
+    if (contact.segment) check_segments(*discretization, contact, is_solid, of_itself, reading);
   }
   if (between) return read_pairs(contact, *between, self, reading);
   reading.scene.contacts.push_back(std::move(contact));

@@ -27,9 +27,16 @@ bool varies_meshes(const Study& study) {
   return !study.refined && std::any_of(meshes.begin(), meshes.end(), [](auto& of) { return of.second.size() > 1; });
 }
 
-/// Where a cell stands in the series of meshes: its level or, of meshes that are varied, its unknowns.
-int place_of(const Study& study, const Cell& cell) {
-  return study.refined ? cell.refine : static_cast<int>(number_at(at(cell.record, "size"), "displacements"));
+/// Where a cell stands in the series of meshes: its level or, of meshes that are varied, its unknowns, and the mesh, for
+/// two meshes may have as many.
+struct MeshPlace {
+  int level;
+  std::string mesh;
+  auto operator<=>(const MeshPlace&) const = default;
+};
+MeshPlace place_of(const Study& study, const Cell& cell) {
+  if (study.refined) return {cell.refine, ""};
+  return {static_cast<int>(number_at(at(cell.record, "size"), "displacements")), cell.mesh};
 }
 
 const std::string& scene_of(const Study& study, const Cell& cell) { return study.refined ? cell.scene : cell.beside; }
@@ -37,8 +44,8 @@ const std::string& scene_of(const Study& study, const Cell& cell) { return study
 /// One setting over the meshes.
 struct Curve {
   std::string name, family;
-  std::map<int, double> errors;  ///< by place_of()
-  double own = 0;                ///< worst enforcement error of its responses: what the method adds
+  std::map<MeshPlace, double> errors;
+  double own = 0;  ///< worst enforcement error of its responses: what the method adds
 };
 
 /// How far apart two curves are at most, of the second; infinite where they have not the same levels.
@@ -130,7 +137,7 @@ void add_bundles(const Study& study, SeriesList& series, json& rows) {
       if (!bundle.is_of_one_method() && series.place(name) == series.list.size())
         series.list.push_back({name, "$ink", "circle", {1, 0}, 60});
       series.add(name, family);
-      for (const auto& [level, error] : bundle.curves.front().errors)
+      for (const auto& [place, error] : bundle.curves.front().errors)
         rows.push_back({{"panel", "level"},
                         {"label", bundle.members()},
                         {"family", family},
@@ -140,8 +147,8 @@ void add_bundles(const Study& study, SeriesList& series, json& rows) {
                         {"scene", choice.first},
                         {"quantity", choice.second},
                         {"error", error},
-                        {"level", level},
-                        {"order", level}});
+                        {"level", place.level},
+                        {"order", place.level}});
     }
 }
 
@@ -159,7 +166,7 @@ void add_settings(const Study& study, SeriesList& series, json& rows) {
       r["scene"] = scene_of(study, cell);
       r["quantity"] = quantity;
       r["error"] = error;
-      r["level"] = r["order"] = place_of(study, cell);
+      r["level"] = r["order"] = place_of(study, cell).level;
       r["seconds"] = cell.sensitivity_seconds;
       rows.push_back(r);
       series.add(name, cell.family);

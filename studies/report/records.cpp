@@ -68,8 +68,13 @@ std::vector<std::string> telling_pointers(const json& lists) {
   return all;
 }
 
-/// Whether what a pointer names changes the mesh.
-bool makes_mesh(const std::string& pointer) { return pointer.find("/mesh/") != std::string::npos; }
+/// Whether what a pointer names changes a mesh: /bodies/NAME/mesh/...
+bool makes_mesh(const std::string& pointer) {
+  const std::string bodies = "/bodies/";
+  if (!pointer.starts_with(bodies)) return false;
+  const auto end_of_name = pointer.find('/', bodies.size());
+  return end_of_name != std::string::npos && pointer.compare(end_of_name, 6, "/mesh/") == 0;
+}
 
 /// Says in each cell of which scene it is, of several, and what is varied: "friction = 0.3" of /contacts/sole/friction,
 /// "meshes (gmsh = fine.msh)" of linked lists.

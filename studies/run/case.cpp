@@ -137,13 +137,17 @@ void name_loose_body(const Model& model, Trajectory<double>& trajectory) {
       loose->name + " is free to move: no support holds it and no contact touches it; add a support or a contact";
 }
 
-/// Says of derivatives that a singular tangent does not have whether a body floats there, and what to do.
+/// Says of derivatives that a singular tangent does not have whether a body floats there or before, and what to do.
 void name_floating_body(CaseResult& result) {
-  if (!is_converged(result.trajectory.status) || result.gradients.status != Status::singular) return;
+  auto& gradients = result.gradients;
+  const auto& increments = result.trajectory.increments;
+  if (!is_converged(result.trajectory.status) || gradients.status != Status::singular) return;
   const auto floating = bodies_that_float(result);
   const auto first =
       std::min_element(floating.begin(), floating.end(), [](auto& a, auto& b) { return a.first < b.first; });
   if (first == floating.end()) return;
+  const std::size_t known = gradients.of_responses.size();  // increments with derivatives; 0 in adjoint mode
+  if (known > 0 && known < increments.size() && first->first > increments[known].time) return;
   result.gradients.message = fmt::format(
       "there are no derivatives: {} floats at the end of the step at t = {:.6g}, where it is free to move {}. "
       "Nothing but damping holds it, so the tangent of the converged state is singular. Hold it by a support, "

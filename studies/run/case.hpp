@@ -97,8 +97,10 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
 
 /// result.json (docs/results.md). `scene_text`: what the hash is of.
 nlohmann::json result_json(const CaseResult& result, const std::string& scene_text);
-/// {response: size that its kind has in this run}: largest force, length or traction, or what these make of an energy
-/// or a moment. What is small beside it may be rounding. Without responses of no such size.
+/// The size that the kind of a response has in a run: the largest force, length or traction, or what these make of an
+/// energy or a moment; none if there is no such size.
+std::optional<double> scale_of(const CaseResult& result, const Response& response);
+/// {response: scale_of()}. What is small beside it may be rounding. Without responses of no such size.
 nlohmann::json scales_json(const CaseResult& result);
 /// Parts of it that a study's row has too.
 nlohmann::json cost_json(const CaseResult& result);

@@ -121,38 +121,43 @@ json cost_json(const CaseResult& result) {
           {"condition_estimate", finite(result.condition_estimate)}};
 }
 
-json scales_json(const CaseResult& result) {
+std::optional<double> scale_of(const CaseResult& result, const Response& response) {
   using Kind = Response::Kind;
-  const auto& [model, slots, unused] = *result.problem;
+  const auto& points = result.problem->slots.points;
   const auto& scales = result.scales;
-  const double extent = (slots.points.rowwise().maxCoeff() - slots.points.rowwise().minCoeff()).norm();
   const double length = std::max(scales.reach, scales.length);
-  json out = json::object();
-  for (const auto& response : model.scene.responses) {
-    double scale = 0;
-    switch (response.kind) {
-      case Kind::reaction:
-      case Kind::contact_force:
-        scale = scales.force * (response.component == Response::Component::moment ? extent : 1);
-        break;
-      case Kind::displacement:
-      case Kind::gap:
-      case Kind::slip:
-        scale = length;
-        break;
-      case Kind::contact_pressure:
-        scale = scales.traction;
-        break;
-      case Kind::dissipation:
-      case Kind::strain_energy:
-        scale = scales.force * length;
-        break;
-      case Kind::plastic_strain:
-      case Kind::contact_half_width:
-        continue;
-    }
-    if (std::isfinite(scale) && scale > 0) out[response.name] = scale;
+  double scale = 0;
+  switch (response.kind) {
+    case Kind::reaction:
+    case Kind::contact_force:
+      scale = scales.force;
+      if (response.component == Response::Component::moment)
+        scale *= (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+      break;
+    case Kind::displacement:
+    case Kind::gap:
+    case Kind::slip:
+      scale = length;
+      break;
+    case Kind::contact_pressure:
+      scale = scales.traction;
+      break;
+    case Kind::dissipation:
+    case Kind::strain_energy:
+      scale = scales.force * length;
+      break;
+    case Kind::plastic_strain:
+    case Kind::contact_half_width:
+      break;
   }
+  if (!std::isfinite(scale) || !(scale > 0)) return std::nullopt;
+  return scale;
+}
+
+json scales_json(const CaseResult& result) {
+  json out = json::object();
+  for (const auto& response : result.problem->model.scene.responses)
+    if (const auto scale = scale_of(result, response)) out[response.name] = *scale;
   return out;
 }
 

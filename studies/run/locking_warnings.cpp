@@ -20,7 +20,24 @@ bool may_lock(const Problem& problem, std::size_t b) {
   const auto& body = problem.model.bodies[b];
   const ElementShape shape = body.mesh.shape;
   return problem.model.scene.space != Space::plane_stress && !has_mean_dilatation(body.kinematics) &&
-         (shape == ElementShape::quad4 || shape == ElementShape::tri3);
+         (shape == ElementShape::quad4 || shape == ElementShape::tri3 || is_solid(shape));
+}
+
+/// An element that may lock, by its name, and what to take in its place.
+struct Locking {
+  const char *element, *remedy;
+};
+Locking locking_of(ElementShape shape) {
+  switch (shape) {
+    case ElementShape::quad4:
+      return {"Q4", "element Q4_mean_dilatation or Q8"};
+    case ElementShape::tri3:
+      return {"T3", "element T6"};
+    case ElementShape::hex8:
+      return {"H8", "element H8_mean_dilatation"};
+    default:
+      return {"T4", "element H8_mean_dilatation"};
+  }
 }
 
 /// What a body of small strain resists: of linear elasticity, or of a metal, whose flow keeps the volume.
@@ -75,13 +92,13 @@ void add_locking(const CaseResult& result, std::vector<Warning>& warnings) {
                                                     : step.bodies[b].spurious_pressure);
     if (!(largest > most_spurious)) continue;
     const std::string& name = problem.model.scene.bodies[b].name;
-    const bool quads = problem.model.bodies[b].mesh.shape == ElementShape::quad4;
+    const auto [element, remedy] = locking_of(problem.model.bodies[b].mesh.shape);
     warnings.push_back(
-        {WarningCode::locking, name, largest, quads ? "element Q4_mean_dilatation or Q8" : "element T6",
+        {WarningCode::locking, name, largest, remedy,
          fmt::format("{} locks: {} in {} elements, and {:.2g} of its stress is a pressure "
                      "that alternates from element to element",
                      name, moduli->flows ? "plastic flow keeps the volume" : fmt::format("nu = {:.6g}", moduli->nu()),
-                     quads ? "Q4" : "T3", largest)});
+                     element, largest)});
   }
 }
 

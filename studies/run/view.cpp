@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
 
+#include "core/mesh/sides.hpp"
 #include "studies/run/element_fields.hpp"
 
 namespace stickslip {
@@ -14,27 +14,6 @@ Vec<double, 3> mean_outward(const Problem& problem) {
   Vec<double, 3> sum = Vec<double, 3>::Zero();
   for (const auto& geometry : problem.slots.geometry) sum -= geometry.area * Vec<double, 3>(geometry.normal);
   return sum.norm() > 0 ? sum.normalized() : sum;
-}
-
-/// The faces of a body that belong to one element alone, in the numbering of the model.
-std::vector<Piece> boundary_pieces(const Model& model, int b, int first_element) {
-  const auto& body = model.bodies[b];
-  std::map<std::vector<int>, std::pair<int, Piece>> faces;  // by ascending nodes: of how many elements
-  for (int e = 0; e < body.mesh.element_count(); ++e) {
-    const auto nodes = detail::element_nodes(body, e);
-    for (const auto& side : sides_of(body.mesh.shape)) {
-      Piece piece{b, first_element + e, {}};
-      for (const int a : side) piece.nodes.push_back(nodes[a]);
-      auto key = piece.nodes;
-      std::sort(key.begin(), key.end());
-      auto& [count, first] = faces[key];
-      if (++count == 1) first = std::move(piece);
-    }
-  }
-  std::vector<Piece> pieces;
-  for (auto& [key, face] : faces)
-    if (face.first == 1) pieces.push_back(std::move(face.second));
-  return pieces;
 }
 
 }  // namespace
@@ -60,8 +39,10 @@ std::vector<Piece> pieces_of(const Problem& problem, const State<double>& state,
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
     if (view && is_solid(body.mesh.shape)) {
-      const auto own = boundary_pieces(model, b, first);
-      pieces.insert(pieces.end(), own.begin(), own.end());
+      for (auto& [element, nodes] : free_sides(body.mesh)) {
+        for (int& node : nodes) node += body.first_node;
+        pieces.push_back({b, first + element, std::move(nodes)});
+      }
     } else {
       for (int e = 0; e < body.mesh.element_count(); ++e)
         pieces.push_back({b, first + e, detail::element_nodes(body, e)});

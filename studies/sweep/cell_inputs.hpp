@@ -30,9 +30,9 @@ struct CellInput {
 /// Cells with the same key share a variant of a scene: its problem, condensation and references.
 std::string variant_key(const CellInput& cell);
 
-/// The cells, all valid: scene by scene, in it mesh level by level, then each combination of `vary`, then the methods with each combination
-/// of their options, the last varying fastest. Inputs that are the same come once, and a note says how many
-/// were left out. Empty where there is a fault.
+/// The cells, all valid: scene by scene, in it mesh level by level, then each combination of `vary`, then the methods
+/// with each combination of their options, the last varying fastest. Inputs that are the same come once, and a note says
+/// how many were left out. Empty where there is a fault.
 std::vector<CellInput> expand(const Study&, const std::string& program_version, Diagnostics&, MeshFiles&);
 
 /// Reports what else is at fault where the study, or the file of its scene, is already, and so has no cells: values of

@@ -143,13 +143,16 @@ std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
          std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
 }
 
-/// Makes the rows those of this study where it differs in its error budget or its certificates alone, which the id of a
-/// cell does not know: what is asked for and is not there is to be measured, and what is not asked for is not shown.
+/// Makes the rows those of this study in what the id of a cell does not know: where the cell stands in the study, its
+/// error budget and its certificate. What is asked for and is not there is to be measured; what is not is not shown.
 void match_extras(const Plan& plan, RowsById& rows) {
   const bool certifies = !plan.study.solutions.empty();
   for (const auto& cell : plan.cells) {
     const auto row = rows.find(cell.id);
-    if (row == rows.end() || cell.peer) continue;
+    if (row == rows.end()) continue;
+    row->second.erase("scene");
+    row->second.update(place_of(cell));
+    if (cell.peer) continue;
     const int copies = row->second.value("/error_budget/copies"_json_pointer, 0);
     const bool uncertified = certifies && converged(row->second) && !row->second.contains("certificate");
     if (plan.study.budget_copies == 0) row->second.erase("error_budget");

@@ -15,11 +15,12 @@ using nlohmann::json;
 double relative(double difference, double scale) { return difference == 0 ? 0 : difference / scale; }
 
 /// The size of a parameter: its absolute value. If that is zero, as of a shape: the least change that would change a
-/// response or an objective by its own size.
+/// response or an objective by its own size, or by that of its kind in the run if that is larger. (A response may vanish
+/// by symmetry; it would make the parameter as small as rounding.)
 class ParameterSize {
  public:
   explicit ParameterSize(const Parameter& parameter) : value_(std::abs(parameter.value)) {}
-  /// Takes a response, or its largest size, with its derivative.
+  /// Takes the size of a response, with its derivative.
   void see(double response, double derivative) {
     if (response != 0 && derivative != 0) least_ = std::min(least_, std::abs(response / derivative));
   }
@@ -35,6 +36,13 @@ double derivative_scale(double exact, double response, const ParameterSize& para
   return std::max(std::abs(exact), std::abs(response) / parameter());
 }
 
+/// What the kind of its response makes of an objective (scale_of()): squared if it has a target; 0 if there is none.
+double scale_of(const CaseResult& result, const Objective& objective) {
+  const auto& response = result.problem->model.scene.responses[objective.response];
+  const double scale = scale_of(result, response).value_or(0);
+  return objective.target ? scale * scale : scale;
+}
+
 /// Sizes of the parameters, from the largest responses and derivatives of all steps, and from the objectives.
 std::vector<ParameterSize> parameter_sizes(const CaseResult& result) {
   std::vector<ParameterSize> sizes;
@@ -44,7 +52,7 @@ std::vector<ParameterSize> parameter_sizes(const CaseResult& result) {
     ParameterSize& size = sizes.emplace_back(parameters[j]);
     for (std::size_t i = 0; i < result.problem->model.scene.responses.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      double response = 0, derivative = 0;
+      double response = scale_of(result, result.problem->model.scene.responses[i]).value_or(0), derivative = 0;
       for (const auto& step : result.steps) {
         response = larger(response, std::abs(step.responses[row]));
         if (step.sensitivities.size() > 0) derivative = larger(derivative, std::abs(step.sensitivities(row, column)));
@@ -52,7 +60,8 @@ std::vector<ParameterSize> parameter_sizes(const CaseResult& result) {
       size.see(response, derivative);
     }
     for (Eigen::Index i = 0; i < result.gradients.of_objectives.rows(); ++i)
-      size.see(result.objectives[i], result.gradients.of_objectives(i, column));
+      size.see(larger(std::abs(result.objectives[i]), scale_of(result, result.problem->model.scene.objectives[i])),
+               result.gradients.of_objectives(i, column));
   }
   return sizes;
 }

@@ -76,9 +76,9 @@ json brief(const json& steps) {
 
 /// What a row says of its cell, however it went.
 json head_of(const CellInput& cell, bool current_geometry) {
-  json head = {{"id", cell.id},     {"label", cell.label},   {"knobs", cell.knobs},
-               {"vary", cell.vary}, {"refine", cell.refine}, {"scene_hash", fingerprint(cell.canonical)}};
-  if (!cell.scene.empty()) head["scene"] = cell.scene;
+  json head = place_of(cell);
+  head["id"] = cell.id;
+  head["scene_hash"] = fingerprint(cell.canonical);
   if (cell.peer) {
     head["peer"] = {{"name", cell.peer->name}, {"file", cell.peer->file}};
     return head;
@@ -98,6 +98,12 @@ json certificate_of_run(const CaseResult& result, const json& scene, const json&
 }
 
 }  // namespace
+
+json place_of(const CellInput& cell) {
+  json place = {{"label", cell.label}, {"knobs", cell.knobs}, {"vary", cell.vary}, {"refine", cell.refine}};
+  if (!cell.scene.empty()) place["scene"] = cell.scene;
+  return place;
+}
 
 std::string program_version() { return std::string(version::number) + "+" + std::string(version::git); }
 

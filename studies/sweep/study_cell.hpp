@@ -17,6 +17,10 @@ namespace stickslip {
 /// What a cell's id says of the program: a build of another commit does not take its results for its own.
 std::string program_version();
 
+/// The parts of a row that say where its cell stands in the study. The id does not know them: another study may have the
+/// same cell elsewhere.
+nlohmann::json place_of(const CellInput& cell);
+
 /// A valid cell as input, and its problem. pre: read_study and expand found no fault.
 Input input_of(const CellInput& cell, MeshFiles& meshes);
 /// Options of a method may hold slots of the scene, so each method has a scene of its own. Throws ModelError.

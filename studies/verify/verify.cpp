@@ -19,7 +19,8 @@ struct Law {
 // Errors are relative to the largest force F, motion L and traction T of the run so far.
 constexpr Law elements{"elements", 0, "an element may not be turned inside out"},
     supports{"supports", 1e-8, "of L: what is prescribed is exact, to the rounding of turns"},
-    equilibrium{"equilibrium", 1e-8, "of F: Newton's methods end at 1e-9 and less"},
+    equilibrium{"equilibrium", 1e-8,
+                "of F: Newton's methods end at 1e-9 and less; and what springs make of rounded gaps"},
     forces{"balance of forces", 1e-8, "of all forces, times the root of the number of nodes: a sum of their errors"},
     moments{"balance of moments", 1e-8, "of all forces times the size, likewise"},
     place{"place of contact", 0, "a traction needs a point that faces its master"},
@@ -30,7 +31,10 @@ constexpr Law elements{"elements", 0, "an element may not be turned inside out"}
     stick{"stick", 1e-5, "of L: below the bound nothing slides; slips are differences of motions, each as a gap"},
     direction{"slip direction", 1e-6, "1 + cos of the angle between friction and slip, which oppose one another"},
     dissipation{"dissipation", 1e-6, "of T L: friction takes energy, it gives none"},
-    energy{"energy", 1e-6, "of all work, and half of what forces change by times motions: the step's own error"},
+    energy{
+        "energy", 1e-6,
+        "of all work, and half of what forces change by times motions: the step's own error; and what springs make of "
+        "rounded gaps"},
     flow{"plastic strain", 1e-6, "of the largest: the path of displacements decides it, by the law's own bound"},
     responses{"responses", 1e-7, "of the largest of their kind: the same formula of the same numbers"},
     steps{"steps", 0, "every state that the scene asks for, and that the result holds, is there"};

@@ -7,11 +7,14 @@ const Editor = (() => {
 
   /** Whether a browser should solve a scene of this size. */
   const bears = (size) =>
-      size.displacements <= Scenes.MOST.displacements && Scenes.length_of(size) <= Scenes.MOST.length;
+      size.displacements <= Scenes.MOST.displacements && Scenes.length_of(size) <= Scenes.MOST.length &&
+      size.bytes <= Scenes.MOST.bytes;
   const too_large = (size) => say('editor.too-large', {
     ...size,
-    ...Object.fromEntries(Object.entries({most: Scenes.MOST.displacements, most_over_steps: Scenes.MOST.length})
-                              .map(([key, value]) => [key, numeral(value)]))
+    megabytes: numeral(Math.round(size.bytes / 1e6)),
+    most: numeral(Scenes.MOST.displacements),
+    most_over_steps: numeral(Scenes.MOST.length),
+    most_megabytes: numeral(Scenes.MOST.bytes / 1e6)
   });
 
   function select(line, column) {

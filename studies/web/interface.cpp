@@ -12,6 +12,7 @@
 #include "studies/run/fields.hpp"
 #include "studies/run/picture_json.hpp"
 #include "studies/run/simulation.hpp"
+#include "studies/run/view.hpp"
 
 namespace stickslip {
 namespace {
@@ -55,11 +56,13 @@ json size_of(const Simulation& simulation) {
           {"bytes", needed_bytes(*simulation.problem, simulation.input)}};
 }
 
-/// Force per area on the slave at each contact point.
+/// Force per area on the slave at each contact point, as the picture shows it.
 json tractions_json(const Problem& problem, const State<double>& state) {
+  const auto view = view_of(problem);
   json out = json::array();
   for (int p = 0; p < static_cast<int>(problem.model.points.size()); ++p) {
-    const Vector<double> t = traction_vector(problem, state, p);
+    Vector<double> t = traction_vector(problem, state, p);
+    if (view) t = view->seen(t);
     out.push_back(std::vector<double>(t.data(), t.data() + t.size()));
   }
   return out;
@@ -78,9 +81,10 @@ json picture_of(const CaseResult& result, int every) {
 }
 
 /// result.json and picture.json of a run.
-json answer_of(const Simulation& simulation, int every, int& code) {
+json answer_of(const Simulation& simulation, int& code) {
   int done_steps = 0;
   const int steps = static_cast<int>(simulation.problem->model.most_steps());
+  const int every = fields_every(simulation.input.output);
   const auto result = simulate(simulation, [&] {
     ++done_steps;
     if (session.on_step) session.on_step(done_steps, steps);
@@ -91,6 +95,12 @@ json answer_of(const Simulation& simulation, int every, int& code) {
                  {"picture", picture_of(result, every)}};
   code = is_converged(result.status()) ? done : not_solved;
   return answer;
+}
+
+/// Fields of every so many-th step; 0: of the last alone.
+OutputOptions fields_of(int every) {
+  if (every == 0) return {};
+  return {OutputOptions::Fields::every, every};
 }
 
 /// Answers a request; `code`: what the program would return to the shell.
@@ -106,7 +116,10 @@ json answer_to(const json& request, int& code) {
     answer["size"] = size_of(*simulation);
     answer["document"] = simulation->input.document;
     if (request.value("explain", false)) answer["explain"] = explain(simulation->input, *simulation->problem);
-    if (request.value("solve", true)) answer.update(answer_of(*simulation, request.value("every", 0), code));
+    if (request.value("solve", true)) {
+      simulation->input.output = fields_of(request.value("every", 0));
+      answer.update(answer_of(*simulation, code));
+    }
   } else {
     code = bad_input;
   }
@@ -142,10 +155,13 @@ EMSCRIPTEN_KEEPALIVE int stickslip_scene(const char* request) {
   return code;
 }
 
-/// Result out, of the last stickslip_scene(): {"faults": [{"line", "column", "pointer", "message", "text"}], "notes":
-/// the same, "size": {"displacements", "contact_points", "steps", "bytes", "extent"}, "document": the scene as it was run,
-/// "result": result.json, "scales": its scales_json(), "picture": picture.json, with the `traction` vectors of its contact points}; the last
-/// four if the scene has no fault. {"cancelled": {"done", "steps"}} after code 4, {"broken": why} after code 1. Valid until the next call.
+/// Result out, of the last stickslip_scene(). Valid until the next call. Its keys:
+/// - "faults": [{"line", "column", "pointer", "message", "text"}], and "notes", the same;
+/// - if the scene has no fault, "size": {"displacements", "contact_points", "steps", "bytes", "extent"}, and "document":
+///   the scene as it was run;
+/// - if it was solved, "result": result.json, "scales": scales_json() of it, and "picture": picture.json, with the
+///   `traction` vectors of its contact points.
+/// After code 4 it is {"cancelled": {"done", "steps"}}, after code 1 {"broken": why}.
 EMSCRIPTEN_KEEPALIVE const char* stickslip_result() { return stickslip::session.result.c_str(); }
 
 /// Progress: `report` is called after each step of a run; nullptr: nothing is.

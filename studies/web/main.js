@@ -42,6 +42,10 @@ const Page = (() => {
     Show.after_change();
   }
 
+  /** Whether steps have derivatives of responses: an adjoint has those of objectives alone. */
+  const has_derivatives = (document) =>
+      document.sensitivity?.mode !== 'adjoint' && Derivative.movable(document).length > 0;
+
   function show_switches() {
     const options = (select, names, chosen) => {
       select.replaceChildren(...names.map((name) => Panel.make('option', {value: name}, name)));
@@ -53,7 +57,7 @@ const Page = (() => {
     byId('by').hidden = !State.shown.derivative;
     for (const input of document.querySelectorAll('[name="shown"]')) {
       input.checked = (input.value === 'derivative') === State.shown.derivative;
-      input.disabled = parameters.length === 0;
+      input.disabled = !has_derivatives(State.scene.document);
     }
     byId('views').setAttribute('aria-label', say('view'));
     byId('views').replaceChildren(...['cost', 'steps', 'contact'].map((view) => {
@@ -86,14 +90,16 @@ const Page = (() => {
     if (given.knob !== undefined) State.scene.knob = number(given.knob);
     for (const control of Object.values(State.scene.controls)) {
       const value = number(given['c.' + control.name] ?? 'none');
-      if (value !== null) control.value = value;
+      if (value === null) continue;
+      const [from, to] = control.choices ? [0, control.choices.length - 1] : [control.from, control.to];
+      control.value = Math.min(to, Math.max(from, control.choices ? Math.round(value) : value));
     }
     const responses = Object.keys(answer.document.responses ?? {}), parameters = Derivative.movable(answer.document);
     const among = (names, ...wanted) => wanted.find((name) => names.includes(name)) ?? names[0];
     State.shown = {
       response: among(responses, given.response, lesson?.response),
       parameter: among(parameters, given.by, lesson?.parameter, 'mu'),
-      derivative: (given.shown ?? lesson?.shown) === 'derivative' && parameters.length > 0,
+      derivative: (given.shown ?? lesson?.shown) === 'derivative' && has_derivatives(answer.document),
       view: among(['cost', 'steps', 'contact'], given.view, lesson?.view),
       drawn: among(METHODS, given.drawn, 'monolithic_al'),
       accuracy: number(given.accuracy ?? -3) ?? -3,
@@ -135,10 +141,17 @@ const Page = (() => {
   /** Shows what the address asks for. */
   async function open_address() {
     const given = Link.read();
-    if (given.scene) return open({path: 'scene.json', text: await Link.unpack(given.scene), edited: true}, null, given);
-    if (given.json)
-      return open(
-          {path: 'scene.json', text: JSON.stringify(JSON.parse(given.json), null, 1), edited: true}, null, given);
+    let own = null;
+    try {
+      if (given.scene) own = await Link.unpack(given.scene);
+      else if (given.json) own = JSON.stringify(JSON.parse(given.json), null, 1);
+    } catch {
+      await open_lesson('play');
+      Editor.open(true);
+      Editor.show({faults: [{text: say('link.damaged')}]});
+      return;
+    }
+    if (own !== null) return open({path: 'scene.json', text: own, edited: true}, null, given);
     if (given.file && Scenes.shipped[given.file])
       return open({path: given.file, text: Scenes.shipped[given.file], edited: false}, null, given);
     return open_lesson(given.lesson ?? 'play', given);
@@ -164,7 +177,7 @@ const Page = (() => {
       const url = location.href.replace(/#.*/, '') + await address();
       try {
         history.replaceState(null, '', url);
-      } catch { /* as above */
+      } catch { /* a page that was opened from a file may not change its address */
       }
       byId('live').textContent =
           await navigator.clipboard.writeText(url).then(() => say('link.copied'), () => say('link.failed'));
@@ -184,6 +197,10 @@ const Page = (() => {
     Editor.start((source) => open(source, null));
     setInterval(Show.progress, 250);
     addEventListener('hashchange', open_address);
+    document.querySelector('.skip').addEventListener('click', (event) => {
+      event.preventDefault();  // the part of the address behind # is the state of the page
+      byId('scene-title').focus();
+    });
     addEventListener('resize', Show.all);
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => State.scene && Show.all());
     Solver.compiled.catch((error) => {

@@ -67,7 +67,7 @@ const Picture = (() => {
         const [x, y] = obstacle.circle.center, r = obstacle.circle.radius;
         points.push([x - r, y - r], [x + r, y + r]);
       } else if (lumped(picture))
-        points.push(...(obstacle.plane ? [obstacle.plane.point] : obstacle.polyline?.points ?? []));
+        points.push(...(obstacle.plane?.point.length === 2 ? [obstacle.plane.point] : obstacle.polyline?.points ?? []));
     }
     let [low, high] = given ? [given.slice(0, 2), given.slice(2)] : box_of(points);
     const size = Math.max(high[0] - low[0], high[1] - low[1]) || 1;
@@ -128,7 +128,9 @@ const Picture = (() => {
             (7 * (into[0] - 0.7 * e[0])).toFixed(1)},${(7 * (into[1] - 0.7 * e[1])).toFixed(1)}`;
       group.append(element('path', {d: hatch, class: 'hatch'}), element('path', {d: `M${a}L${b}`}));
     };
-    const [kind, shape] = Object.entries(obstacle)[0], place = (p) => carried(shape.moved, p);
+    const [kind, shape] = Object.entries(obstacle)[0];
+    if (shape.normal?.length > 2) return group;  // of space, where all is seen along z
+    const place = (p) => carried(shape.moved, p);
     if (kind === 'plane') {
       const p = place(shape.point), n = shape.normal, far = 2 * (WIDTH + HEIGHT) / frame.scale,
             length = Math.hypot(...n);
@@ -172,7 +174,7 @@ const Picture = (() => {
 
   function draw_bodies(picture, places, stands) {
     const group = element('g', {class: 'bodies'}), most = Math.max(...picture.von_mises.map((s) => s ?? 0));
-    const paths = new Map();
+    let path = null, shade_of_path = null;  // elements of one shade that follow one another: the nearest comes last
     picture.elements.forEach((nodes, e) => {
       const corners = {8: 4, 6: 3}[nodes.length] ?? nodes.length, at = nodes.slice(0, corners).map((n) => places[n]);
       if (corners === 2) {
@@ -193,11 +195,14 @@ const Picture = (() => {
       const shade = most > 0 ?
                         SHADES[Math.min(SHADES.length - 1, Math.floor(SHADES.length * picture.von_mises[e] / most))] :
                         SHADES[0];
-      paths.set(
-          shade, (paths.get(shade) ?? '') + 'M' +
-                     at.map((p) => to_pixels(p).map((x) => x.toFixed(1)).join(',')).join('L') + 'Z');
+      const d = 'M' + at.map((p) => to_pixels(p).map((x) => x.toFixed(1)).join(',')).join('L') + 'Z';
+      if (shade === shade_of_path) {
+        path.setAttribute('d', path.getAttribute('d') + d);
+      } else {
+        path = group.appendChild(element('path', {d, fill: shade, class: 'elements'}));
+        shade_of_path = shade;
+      }
     });
-    for (const [shade, d] of paths) group.append(element('path', {d, fill: shade, class: 'elements'}));
     return group;
   }
 

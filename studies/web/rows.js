@@ -40,7 +40,7 @@ const Rows = (() => {
     return rows;
   }
 
-  /** Pressure and shear of Hertz, Cattaneo and Mindlin at the forces of an answer. */
+  /** Pressure and the size of shear of Hertz, Cattaneo and Mindlin at the forces of an answer. */
   function cattaneo(answer) {
     const {press: P, pull: Q} = Answers.last_step(answer)?.responses ?? {}, {document} = answer;
     if (!(P > 0)) return [];
@@ -53,17 +53,20 @@ const Rows = (() => {
       const x = b * i / 60, p = peak * half(x, b), q = mu * (p - (Math.abs(x) < c ? c / b * peak * half(x, c) : 0));
       rows.push(
           {kind: 'exact', what: 'p', x, y: p, order: x},
-          {kind: 'exact', what: 'q', x, y: Math.sign(Q || 1) * q, order: x});
+          {kind: 'exact', what: 'q', x, y: q, order: x});
     }
     return rows;
   }
 
+  /** What tractions are over: the arc length of the contact, or x, which a closed form goes along. */
+  const along_contact = () => State.scene.lesson?.exact ? 'x' : 'arc';
+
   function rows_of_contact() {
-    const answer = State.results[State.shown.drawn]?.answer, rows = [];
+    const answer = State.results[State.shown.drawn]?.answer, rows = [], along = along_contact();
     for (const [name, points] of Object.entries(answer?.picture?.interface ?? {})) {
-      points.x.forEach((x, i) => {
-        if (State.scene.lesson?.window && (x < State.scene.lesson.window[0] || x > State.scene.lesson.window[2]))
-          return;
+      points[along].forEach((x, i) => {
+        const window = along === 'x' ? State.scene.lesson?.window : null;
+        if (window && (x < window[0] || x > window[2])) return;
         rows.push({kind: 'point', what: say('chart.pressure'), line: name + ' p', x, y: -points.normal[i], order: x});
         if (points.tangential[i] !== undefined)
           rows.push(
@@ -71,14 +74,12 @@ const Rows = (() => {
       });
     }
     if (State.scene.lesson?.exact === 'cattaneo' && answer) {
-      const exact = cattaneo(answer),
-            of_rows = rows.filter((row) => row.line.endsWith('q')).reduce((sum, row) => sum + row.y, 0);
-      const side = Math.sign(of_rows) || 1,
-            of_exact = Math.sign(exact.filter((row) => row.what === 'q').reduce((sum, row) => sum + row.y, 0)) || 1;
-      rows.push(...exact.map((row) => row.what === 'q' ? {...row, y: row.y * side * of_exact} : row));
+      const of_rows = rows.filter((row) => row.line.endsWith('q')).reduce((sum, row) => sum + row.y, 0);
+      const side = Math.sign(of_rows) || 1;
+      rows.push(...cattaneo(answer).map((row) => row.what === 'q' ? {...row, y: side * row.y} : row));
     }
     return rows;
   }
 
-  return {cost: rows_of_cost, steps: rows_of_steps, contact: rows_of_contact};
+  return {cost: rows_of_cost, steps: rows_of_steps, contact: rows_of_contact, along_contact};
 })();

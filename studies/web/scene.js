@@ -134,7 +134,7 @@ const Scenes = (() => {
   const length_of = (size) => size.displacements * Math.max(1, size.steps);
 
   /** What a browser bears: of displacements, and of displacements over all steps. */
-  const MOST = {displacements: 20000, length: 400000};
+  const MOST = {displacements: 20000, length: 400000, bytes: 1e9};
 
   return {shipped, METHODS, MOST, at, make, overrides, knob, knob_of, length_of};
 })();

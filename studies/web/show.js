@@ -7,15 +7,18 @@ const Show = (() => {
   const byId = (id) => document.getElementById(id);
   let timer = 0;
 
+  /** Why an answer has no result, in words. */
+  const status_without_result = (answer) => answer?.broken ? say('broken', {why: answer.broken}) :
+      answer?.faults?.length                               ? say('faulty') :
+                                                             say('stopped');
+
   function show_columns() {
     for (const method of METHODS) {
       const {answer, code, less, more, of} = State.results[method] ?? {};
       if (!answer) continue;
       Panel.show_stale(byId('columns'), method, Answers.is_stale(method));
       if (!answer.result) {
-        const status = answer.broken ? say('broken', {why: answer.broken}) :
-                       code === 4    ? say('stopped') :
-                                       say('faulty');
+        const status = status_without_result(answer);
         const words =
             answer.cancelled ? say('stopped.words') : (answer.faults ?? []).map((fault) => fault.text).join(' ');
         Panel.show_column(byId('columns'), method, status, true, [], words);
@@ -146,7 +149,7 @@ const Show = (() => {
     const titles = {
       cost: {x: say('chart.work'), y: say('chart.error', {what: Answers.what()})},
       steps: {x: by, y: Answers.what()},
-      contact: {x: say('chart.place'), y: say('chart.traction')}
+      contact: {x: say('chart.place.' + Rows.along_contact()), y: say('chart.traction')}
     }[name];
     byId('cost').hidden = name !== 'cost';
     if (name === 'cost') show_verdict(rows);
@@ -185,7 +188,8 @@ const Show = (() => {
                                          if (!step)
                                            return say('live.failed', {
                                              method: say(method),
-                                             status: say(answer?.result ? 'status.' + answer.result.status : 'stopped')
+                                             status: answer?.result ? say('status.' + answer.result.status) :
+                                                                      status_without_result(answer)
                                            });
                                          const {newton, factorizations} = answer.result.cost.counts;
                                          return say('live', {

@@ -74,6 +74,26 @@ TEST(EnforcementErrors, OfAParameterThatIsZeroAreRelativeToWhatItDoesElsewhere) 
   EXPECT_NEAR(enforcement_errors(result, reference).at("sensitivity:load/E"), 1e-12 / (4 / 2), 1e-20);
 }
 
+/// A response that vanishes, by symmetry say, does not make a parameter that is zero as small as rounding.
+TEST(EnforcementErrors, DoNotTakeTheSizeOfAParameterFromAResponseThatIsRounding) {
+  Scene s = block_problem()->model.scene;
+  s.responses.push_back(scenes::response("sway", Response::Kind::displacement, "block.top", "x"));
+  s.parameters[0].value = 0;
+  const auto problem = std::make_shared<const Problem>(s);
+  CaseResult reference = nothing(problem), result = nothing(problem);
+  for (CaseResult* of : {&reference, &result}) {
+    of->scales.reach = 4;
+    for (auto& step : of->steps) {
+      step.responses = Vector<double>::Constant(2, 4);
+      step.responses[1] = 1e-18;
+      step.sensitivities = Matrix<double>::Zero(2, 1);
+      step.sensitivities(1, 0) = 1;  // so the parameter's size is 4, not 1e-18
+    }
+  }
+  result.steps[1].sensitivities(0, 0) = 1e-3;
+  EXPECT_NEAR(enforcement_errors(result, reference).at("sensitivity:u/E"), 1e-3, rounding_of_errors);
+}
+
 TEST(EnforcementErrors, WeighTractionsByArea) {
   const auto problem = block_problem();
   CaseResult reference = nothing(problem), result = nothing(problem);

@@ -136,7 +136,6 @@ TEST(ReportDrawing, PgfRaisesPowers) {
   EXPECT_EQ(report::tex_text("2·10⁻¹⁵ & 10³"), "2·10\\textsuperscript{-15} \\& 10\\textsuperscript{3}");
 }
 
-/// Names stand side by side below a chart, which leaves three quarters of the height or more to the curves.
 /// A reader of the file alone knows which option the values at the ends are of, and what was chosen on the page.
 TEST_F(ReportFiles, ChartsCarryWhatTheyNeed) {
   record(description(), in_two_scenes(three_methods()));
@@ -169,6 +168,7 @@ TEST_F(ReportFiles, ValuesAtTheEndsOfLinesStandBesideLines) {
   EXPECT_LT(place_of("right"), report::Axis(0, 10.6, false, 74, 620)(10)) << "left of the end, as b is right of it";
 }
 
+/// Names stand side by side below a chart, which leaves three quarters of the height or more to the curves.
 TEST_F(ReportFiles, LegendsTakeLessThanAQuarterOfTheHeight) {
   auto cells = three_methods();
   for (const double scale : {1.0, 10.0, 100.0})

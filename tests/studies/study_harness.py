@@ -358,6 +358,22 @@ def certified(work):
     print("certified: with a solution of another program, and without again", flush=True)
 
 
+def moved(work):
+    """A study that is edited and resumed keeps the runs that it still asks for; each row then says where its cell stands
+    in the study as it is now."""
+    path, directory, anew = work / "moved.study.json", work / "moved", work / "moved_anew"
+    content = {"scene": "scene.json", "methods": [{"monolithic_al": {}}]}
+    friction = json.loads((work / "scene.json").read_text())["contacts"]["sole"]["friction"]
+    path.write_text(json.dumps(content))
+    run("study", path, "-o", directory)
+    path.write_text(json.dumps({**content, "vary": {"/contacts/sole/friction": [friction / 2, friction]}}))
+    said = run("study", path, "-o", directory, "--resume").stdout
+    if " 1 run now" not in said:
+        sys.exit(f"a run that a study still asks for was made again: {said}")
+    run("study", path, "-o", anew)
+    same(directory, anew, "edited, resumed")
+
+
 def main():
     print(f"seed {SEED}")
     with tempfile.TemporaryDirectory() as folder:
@@ -378,6 +394,7 @@ def main():
         timed(study, whole, work)
         budgeted(work)
         certified(work)
+        moved(work)
 
 
 if __name__ == "__main__":
