@@ -1,4 +1,7 @@
-#include "core/model/element_kernels_impl.hpp"
+#include "core/model/slots.hpp"
+
+#include "core/model/flow_points.hpp"
+#include "core/model/with_law.hpp"
 
 namespace stickslip {
 

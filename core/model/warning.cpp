@@ -38,8 +38,6 @@ std::string_view name_of(WarningCode code) {
       return "folded_element";
     case WarningCode::unbalanced_moment:
       return "unbalanced_moment";
-    case WarningCode::held_on_facet:
-      return "held_on_facet";
     case WarningCode::shared_place:
       return "shared_place";
     case WarningCode::soft_penalty:

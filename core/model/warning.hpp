@@ -26,7 +26,6 @@ enum class WarningCode {
   shear_locking,       ///< value: share of a shear that varies within elements in the squared strain of the body
   folded_element,      ///< value: number of elements that are folded, or nearly so
   unbalanced_moment,   ///< value: share of a response that is a moment
-  held_on_facet,       ///< value: how far a point is beyond the end of its facet, in facets
   shared_place,        ///< value: number of bodies that hold the place of a response
   soft_penalty,        ///< value: share by which springs of the penalty yield beside the bodies
   unstable,            ///< value: number of steps whose equilibrium is unstable

@@ -16,7 +16,6 @@
 #pragma once
 
 #include <optional>
-#include <tuple>
 
 #include "methods/newton/carried.hpp"
 #include "methods/newton/line_search.hpp"
@@ -48,11 +47,7 @@ IterationRecord record(const Evaluation<T>& at, const std::vector<ContactState>&
   return r;
 }
 
-inline constexpr const char* kept_message =
-    "a point at a vertex of facets has no equilibrium on either of them: it is held on one; try a smooth surface, or "
-    "segments";
-
-inline constexpr const char* far_message = "points go to and fro between facets";
+inline constexpr const char* vertex_message = "a point at a vertex of facets has no equilibrium on either of them";
 
 /// The iterations of one equilibrium.
 template <class T>
@@ -82,8 +77,6 @@ class NewtonIterations {
   }
 
  private:
-  using KeptSolution = std::tuple<NewtonEnd, Unknowns<T>, Evaluation<T>>;
-
   std::vector<IterationRecord>& history() { return result_.history; }
 
   void record(int iteration) {
@@ -143,15 +136,13 @@ class NewtonIterations {
   bool is_linear() const { return task_.contact.model.effects.linear_bulk; }
 
   /// Whether points that slide along curves give another way on from an end. States may cycle because points go to and
-  /// fro at a vertex: then the points are kept on their patches. From the solution of that there may be a way to a
-  /// solution in which all points face what they are on. Where there is none, the end is that of the kept points, and
-  /// says so; unless one of them is far from its vertex, for that is no solution.
+  /// fro at a vertex: then the points are kept on their patches. From the solution of that there may be a way to one in
+  /// which all points face what they are on; it is tried once. Kept points that face something else are no solution.
   bool goes_on(NewtonEnd& end) {
-    const bool wrong = evaluate_.keeps_wrong(unknowns_, at_.field);
-    const bool first = is_converged(end.status) && !kept_ && wrong;
+    const bool wrong = is_converged(end.status) && evaluate_.keeps_wrong(unknowns_, at_.field);
+    const bool first = wrong && !released_;
     if (first) {
-      kept_ = {end, unknowns_, at_};
-      if (evaluate_.keeps_far(at_.field)) std::get<NewtonEnd>(*kept_) = {Status::cycle, far_message};
+      released_ = true;
       evaluate_.release();
     }
     if (first || (end.status == Status::cycle && evaluate_.keep_patches())) {
@@ -159,10 +150,7 @@ class NewtonIterations {
       at_ = evaluate_(unknowns_);
       return true;
     }
-    if (kept_ && (!is_converged(end.status) || wrong)) {
-      std::tie(end, unknowns_, at_) = std::move(*kept_);
-      if (is_converged(end.status)) end.message = kept_message;
-    }
+    if (wrong || (released_ && !is_converged(end.status))) end = {Status::cycle, vertex_message};
     return false;
   }
 
@@ -192,11 +180,11 @@ class NewtonIterations {
   NewtonTangent<T> tangent_;
   NewtonStop stop_;
   Unknowns<T> unknowns_;
-  int predictions_;                   ///< iterations that the predictor took: 0 or 1
-  Evaluation<T> at_;                  ///< of the unknowns
-  std::vector<ContactState> used_;    ///< states of the last tangent
-  ContactField<T> directed_;          ///< field and branches of the last step
-  std::optional<KeptSolution> kept_;  ///< of points on patches that they do not face, and how it ends
+  int predictions_;                 ///< iterations that the predictor took: 0 or 1
+  Evaluation<T> at_;                ///< of the unknowns
+  std::vector<ContactState> used_;  ///< states of the last tangent
+  ContactField<T> directed_;        ///< field and branches of the last step
+  bool released_ = false;           ///< whether points were kept on patches, and then let go
   double step_length_ = 1;
   Equilibrium<T> result_;
 };

@@ -61,7 +61,7 @@ struct Evaluation {
 
 /// Extreme values over the contact points, for estimates of rounding.
 struct PointSizes {
-  double area_times_rho = 0;                                 ///< largest A rho
+  double area_times_rho = 0;                                 ///< largest A rho of a point that touches
   double distance = 0;                                       ///< largest initial gap of a closed point, length
   double tie = 0;                                            ///< largest tie_length() of a point that touches, length
   double tie_force = 0;                                      ///< largest force that it makes of the body, k times it
@@ -85,10 +85,11 @@ PointSizes measure_points(const ContactInput<T>& input, const ContactField<T>& f
         root_of_squares(point.components(), [&](int c) { return value(field.traction[point.multiplier + c]); });
     scales.traction = std::max(scales.traction, traction);
     scales.length = std::max({scales.length, moved, area * traction / stiffness});
-    sizes.area_times_rho = std::max(sizes.area_times_rho, area * value(input.rho[p].normal));
-    if (field.state[p] != ContactState::open)
-      sizes.distance = std::max(sizes.distance, std::abs(value(input.slots.geometry[p].gap)));
     const double tie = tie_length(point, input.slots.geometry[p]);
+    const bool is_closed = field.state[p] != ContactState::open;
+    if (is_closed || value(field.gap[p]) <= tie)  // (the gap of others makes no force)
+      sizes.area_times_rho = std::max(sizes.area_times_rho, area * value(input.rho[p].normal));
+    if (is_closed) sizes.distance = std::max(sizes.distance, std::abs(value(input.slots.geometry[p].gap)));
     if (value(field.gap[p]) <= tie) {
       sizes.tie = std::max(sizes.tie, tie);
       sizes.tie_force = std::max(sizes.tie_force, stiffness * tie);
@@ -193,17 +194,6 @@ class Evaluator {
   bool keep_patches();
   /// Whether a closed point was kept on a patch that it does not face.
   bool keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const;
-  /// Whether a closed point that was kept is more than a facet beyond the end of its patch: far from a vertex, its
-  /// forces are those of a surface that is not there. (Of nodes that are held for want of a vertex' own branch, 0.6
-  /// were met.)
-  bool keeps_far(const ContactField<T>& field) const {
-    constexpr double far = 1;
-    for (std::size_t p = 0; p < kept_.size(); ++p)
-      if (kept_[p] != Patch::none && field.state[p] != ContactState::open &&
-          std::max(-field.facing[p].xi, field.facing[p].xi - 1) > far)
-        return true;
-    return false;
-  }
   /// Ends the effect of keep_patches().
   void release();
   /// Replaces the rows of an evaluation by those in given branches.

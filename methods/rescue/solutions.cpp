@@ -57,10 +57,16 @@ std::optional<Relation> relation(const ContactProblem& problem, double alpha, co
   return r;
 }
 
+/// Of the components of all points, without memory of its own on the heap: combinations are many. (12: as many points
+/// without friction have the most combinations.)
+constexpr int most_components = 12;
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_components, most_components>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_components, 1>;
+
 /// The linear system of a combination. Its unknowns are g where tau is given, and tau elsewhere.
 struct System {
-  Matrix<double> matrix;
-  Vector<double> right;
+  SmallMatrix matrix;
+  SmallVector right;
 };
 
 System system_of(const ContactProblem& problem, const Relation& r, const std::vector<Branch>& combination) {
@@ -86,11 +92,11 @@ System system_of(const ContactProblem& problem, const Relation& r, const std::ve
 
 /// g and tau of a combination.
 struct Outcome {
-  Vector<double> g, tau;
+  SmallVector g, tau;
 };
 
-Outcome outcome_of(const ContactProblem& problem, const std::vector<Branch>& combination, const Vector<double>& x) {
-  Outcome out{x, Vector<double>::Zero(x.size())};
+Outcome outcome_of(const ContactProblem& problem, const std::vector<Branch>& combination, const SmallVector& x) {
+  Outcome out{x, SmallVector::Zero(x.size())};
   for (std::size_t p = 0; p < combination.size(); ++p) {
     const auto& point = problem.points[p];
     const auto& [state, sign] = combination[p];
@@ -127,12 +133,15 @@ void for_each_combination(const ContactProblem& problem, F&& f) {
   }
 }
 
+/// The rounding of the motion without tractions, in gaps and forces that are zero.
+double noise_of(const Relation& r) { return 1e3 * unit_roundoff * r.moved.lpNorm<Eigen::Infinity>(); }
+
 /// Whether an outcome satisfies the conditions of its branches up to rounding. Rounding is a share of the largest
-/// lengths and tractions, and the rounding of the motion without tractions in gaps and forces that are zero.
+/// lengths and tractions, and noise_of().
 bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combination, const Outcome& at,
               const Relation& r, double rounding) {
-  const double noise = 1e3 * unit_roundoff * r.moved.lpNorm<Eigen::Infinity>();
-  const double length = rounding * std::max(at.g.cwiseAbs().maxCoeff(), r.free.cwiseAbs().maxCoeff()) + noise;
+  const double noise = noise_of(r),
+               length = rounding * std::max(at.g.cwiseAbs().maxCoeff(), r.free.cwiseAbs().maxCoeff()) + noise;
   const double traction = rounding * at.tau.cwiseAbs().maxCoeff() + noise;
   for (std::size_t p = 0; p < combination.size(); ++p) {
     const auto& point = problem.points[p];
@@ -151,7 +160,7 @@ bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combinat
 }
 
 /// A determinant over Hadamard's bound for it.
-double share_of_determinant(const Matrix<double>& A) { return A.determinant() / A.colwise().norm().prod(); }
+double share_of_determinant(const SmallMatrix& A) { return A.determinant() / A.colwise().norm().prod(); }
 
 /// A smaller share is rounding. Example: two contacts at one node repeat one another, which leaves some 1e-16.
 constexpr double rounding_of_determinants = 1e-12;
@@ -195,16 +204,17 @@ std::optional<std::vector<BranchSolution>> all_solutions(const ContactProblem& p
   if (!r) return std::nullopt;
   std::vector<BranchSolution> solutions;
   std::vector<Vector<double>> tractions;  // as lengths
+  const double noise = noise_of(*r);
   for_each_combination(problem, [&](const std::vector<Branch>& combination) {
     const System system = system_of(problem, *r, combination);
-    const Eigen::PartialPivLU<Matrix<double>> lu(system.matrix);
-    if (!(lu.rcond() > singular)) return true;
+    const Eigen::PartialPivLU<SmallMatrix> lu(system.matrix);
     const Outcome at = outcome_of(problem, combination, lu.solve(system.right));
-    if (!at.g.allFinite() || !is_valid(problem, combination, at, *r, rounding)) return true;
+    if (!at.g.allFinite() || !is_valid(problem, combination, at, *r, rounding) || !(lu.rcond() > singular)) return true;
     for (std::size_t k = 0; k < solutions.size(); ++k) {
       const double length = std::max({at.g.norm(), solutions[k].kinematics.norm(), r->free.norm()});
       const double traction = std::max(at.tau.norm(), tractions[k].norm());
-      if ((at.g - solutions[k].kinematics).norm() <= same * length && (at.tau - tractions[k]).norm() <= same * traction)
+      if ((at.g - solutions[k].kinematics).norm() <= same * length + noise &&
+          (at.tau - tractions[k]).norm() <= same * traction + noise)
         return true;
     }
     BranchSolution solution;

@@ -69,8 +69,9 @@ Uniqueness uniqueness_of(const ContactProblem& problem);
 /// it a difference of two solutions may be rounding. 0 if bodies can move although all points stick.
 double reach_of(const ContactProblem& problem);
 
-/// All solutions. Two whose tractions differ by less than 1e-9 of the largest count as one. None if bodies can move
-/// although all points stick.
+/// All solutions. Two count as one whose gaps, slips and tractions differ by less than 1e-9 of the largest, or by the
+/// rounding of the motion (all tractions are that where nothing presses). None if bodies can move although all points
+/// stick.
 ///
 ///   alpha, from  add the forces alpha D (v - from) to the problem
 ///   rounding     share of lengths and of tractions by which a condition of a branch may be violated

@@ -100,8 +100,8 @@ const char* const scene = R"json({
         "offset": {"description": "added to the gap (length); negative: an interference", "type": "number",
           "default": 0, "examples": [-0.01]},
         "surface": {
-          "description": "of a master of facets: straight, or smooth through their ends (Catmull-Rom, normals go on)",
-          "title": "faceted, smooth or object", "default": "faceted", "examples": ["smooth"],
+          "description": "of a master of facets: straight, or smooth through their ends (Catmull-Rom, normals go on). Left out: smooth at finite strain, of contact at nodes; else faceted",
+          "title": "faceted, smooth or object", "examples": ["smooth"],
           "anyOf": [{"enum": ["faceted", "smooth"]},
             {"type": "object", "required": ["smooth"], "additionalProperties": false, "properties": {
               "smooth": {"description": "b_spline: curvatures go on too, a little inside of the facets' ends",

@@ -246,15 +246,17 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   if (const auto surface = node.find("surface")) read_surface(*surface, contact, reading);
   const bool is_solid =
       between || !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
-  // Why the default: the geometry of integrated contact is continuous, from facet to facet and over ends.
-  contact.segment =
-      is_solid && reading.scene.finite_strain && !node.find("surface") && has_facets(contact.master, reading);
+  // Why the defaults: the geometry of integrated contact is continuous, from facet to facet and over ends; so is the
+  // normal of a smooth surface. A point that slides over facets has no equilibrium at some of their vertices.
+  const bool is_free = reading.scene.finite_strain && !node.find("surface") && has_facets(contact.master, reading);
+  contact.segment = is_solid && is_free;
   const bool self = between && node.find("self") && node.find("self")->boolean().value_or(false);
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
     const bool of_itself = between ? self : contact.is_of_itself();
     if (contact.segment) check_segments(*discretization, contact, is_solid, of_itself, reading);
   }
+  if (is_free && !contact.segment) contact.smoothing = Smoothing::catmull_rom;
   if (between) return read_pairs(contact, *between, self, reading);
   reading.scene.contacts.push_back(std::move(contact));
 }

@@ -89,7 +89,7 @@ std::string label_of(const json& row) {
 
 /// Codes of warnings that may say why two runs differ.
 std::string reasons(const Pair& pair) {
-  static const std::set<std::string> known = {"non_unique",   "branch_ends",    "cut_steps", "held_on_facet",
+  static const std::set<std::string> known = {"non_unique",   "branch_ends",    "cut_steps",
                                               "soft_penalty", "folded_element", "unstable"};
   std::set<std::string> codes;
   for (const auto* answer : {pair.a, pair.b})

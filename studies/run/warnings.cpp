@@ -110,33 +110,6 @@ void add_slips(const CaseResult& result, std::vector<Warning>& warnings) {
   }
 }
 
-void add_held_points(const CaseResult& result, std::vector<Warning>& warnings) {
-  constexpr double negligible = 1e-6;  // of a facet: a free end reaches so far, and rounding does
-  const auto& model = result.problem->model;
-  std::vector<double> farthest(model.scene.contacts.size(), 0);
-  std::vector<int> steps(farthest.size(), 0);
-  for (const auto& step : solved_steps(result)) {
-    const auto& field = step.increment->state.contact;
-    std::vector<char> held(farthest.size(), 0);
-    for (std::size_t p = 0; p < field.facing.size(); ++p) {
-      const int contact = model.points[p].contact;
-      const double beyond = std::max(-field.facing[p].xi, field.facing[p].xi - 1);
-      if (field.state[p] == ContactState::open || !(beyond > negligible)) continue;
-      farthest[contact] = std::max(farthest[contact], beyond);
-      held[contact] = 1;
-    }
-    for (std::size_t c = 0; c < held.size(); ++c) steps[c] += held[c];
-  }
-  for (std::size_t c = 0; c < farthest.size(); ++c)
-    if (farthest[c] > 0)
-      warnings.push_back(
-          {WarningCode::held_on_facet, model.scene.contacts[c].name, farthest[c],
-           "smooth the master, or integrate over segments (\"discretization\": \"segment\")",
-           fmt::format("{}: in {} of {} steps a point is held on a facet of the master beyond its end, "
-                       "by {:.2g} of it: at the vertex neither facet has an equilibrium",
-                       model.scene.contacts[c].name, steps[c], solved_steps(result).size(), farthest[c])});
-}
-
 void add_cut_steps(const CaseResult& result, std::vector<Warning>& warnings) {
   if (!result.problem->model.effects.friction) return;
   const auto steps = solved_steps(result);
@@ -287,7 +260,6 @@ std::vector<Warning> warnings_of(const CaseResult& result) {
   for (auto& warning : contacts_never_closed(result)) warnings.push_back(std::move(warning));
   add_deformations(result, warnings);
   add_slips(result, warnings);
-  add_held_points(result, warnings);
   add_cut_steps(result, warnings);
   add_locking_warnings(result, warnings);
   add_single_nodes(result, warnings);

@@ -16,7 +16,6 @@ namespace stickslip {
 ///   large_strain, large_rotation   above 5 % or 5 degrees in an element
 ///   large_sliding  slip of a closed point along a master that is deformable or curved, above half a slave element
 ///   idle_friction  none of the points of a contact with friction has slipped in any step
-///   held_on_facet  closed points beyond the end of their facet, at a vertex where neither facet has an equilibrium
 ///   cut_steps      with friction: steps that were cut, which gives another discrete path
 ///   (of elements that lock: studies/run/locking_warnings.hpp)
 ///   floating_body  a body that nothing which presses holds at the end of a step

@@ -26,7 +26,7 @@ Contact::Contact(const Scene& scene, const std::string& called, const Json& side
       scene_(scene),
       body_(scene.body(sides.at("slave"))),
       side_(scene.side(sides.at("slave"))),
-      master_(scene, given, sides.at("slave"), sides.at("master")),
+      master_(scene, given, sides.at("slave"), sides.at("master"), segment),
       facets_(body_.in_space() ? Facets{} : facets_of(side_)),
       areas_(areas_of(scene, body_, side_)) {
   for (auto& [node, area] : areas_)

@@ -10,9 +10,10 @@ const Eigen::Matrix4d shapes[3] = {Eigen::Matrix4d{{0, 1, 0, 0}, {0, -1, 1, 0}, 
 
 }  // namespace
 
-Master::Master(const Scene& scene, const Json& contact, const std::string& slave, const std::string& master)
+Master::Master(const Scene& scene, const Json& contact, const std::string& slave, const std::string& master,
+               bool integrated)
     : obstacle(part(part(scene.json, "obstacles"), master)), motion(obstacle), scene_(scene), itself_(slave == master) {
-  const Json surface = contact.value("surface", Json("faceted"));
+  const Json surface = contact.value("surface", Json(scene.finite && !integrated ? "smooth" : "faceted"));
   const std::string kind = surface.is_object() ? surface.value("smooth", "catmull_rom") : surface.get<std::string>();
   smooth_ = kind == "faceted" ? 0 : kind == "b_spline" ? 2 : 1;
   frozen_ = !scene.finite && smooth_ == 0 && !contact.contains("between") && !itself_;

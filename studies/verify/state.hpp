@@ -118,8 +118,8 @@ struct Touch;
 
 class Master {
  public:
-  /// `slave`: side expression; the same as `master` where a side touches itself.
-  Master(const Scene& scene, const Json& contact, const std::string& slave, const std::string& master);
+  /// `slave`: side expression; the same as `master` where a side touches itself. `integrated`: over segments.
+  Master(const Scene& scene, const Json& contact, const std::string& slave, const std::string& master, bool integrated);
   bool rigid() const { return !obstacle.empty(); }
   void place_vertices(const Field& x);  ///< where they are from now on, of nodes at x
   Line line_of(const Patch& patch) const { return {at_.col(patch.vertex[1]), at_.col(patch.vertex[2])}; }

@@ -78,12 +78,11 @@ Scene drawn_blocks() {
 }
 
 TEST(Stepping, GivesUpAfterBoundedWork) {
-  // No part of the step ends within its few iterations; the motion would take hundreds of steps in each.
+  // No part of the step ends within its few iterations, however it is cut.
   MonolithicAL method;
   method.newton.max_iterations = 3;
   const auto s = run(drawn_blocks(), method);
   EXPECT_EQ(s.trajectory.status, Status::cap) << s.trajectory.message;
-  EXPECT_NE(s.trajectory.message.find("given up after"), std::string::npos) << s.trajectory.message;
   EXPECT_LE(s.trajectory.counters.newton, 5050);  // (the bound, one equilibrium, and parts that go well)
   ASSERT_EQ(s.trajectory.increments.size(), 1u);
 }

@@ -8,7 +8,7 @@
 namespace stickslip {
 namespace {
 
-TEST(KeptPatches, MayBeLeftByAFacetAndNoFarther) {
+TEST(KeptPatches, AreWrongWhereThePointFacesAnother) {
   Scene scene = scenes::sliding_die();
   scene.contacts[0].smoothing = Smoothing::none;
   const Model model = make_model(scene);
@@ -21,7 +21,8 @@ TEST(KeptPatches, MayBeLeftByAFacetAndNoFarther) {
   const EquilibriumTask<double> task{input, Multipliers::unknown, none};
   Account account;
   Evaluator<double> evaluate(engine, task, account);
-  auto at = evaluate({engine.begin(0.1, start.displacement, {}), start.multiplier});
+  const Unknowns<double> unknowns{engine.begin(0.1, start.displacement, {}), start.multiplier};
+  auto at = evaluate(unknowns);
   auto& point = at.field.facing[2];
   at.field.state[2] = ContactState::stick;
   const int first = point.patch;
@@ -32,12 +33,13 @@ TEST(KeptPatches, MayBeLeftByAFacetAndNoFarther) {
     evaluate.accept(at);
   }
   ASSERT_TRUE(evaluate.keep_patches());
-  for (const auto& [xi, far] : {std::pair(0.5, false), {1.9, false}, {-0.9, false}, {2.1, true}, {-1.1, true}}) {
-    point.xi = xi;
-    EXPECT_EQ(evaluate.keeps_far(at.field), far) << xi;
-  }
+  // At the start the point faces `first`, on which it is kept; moved by a facet it faces the next.
+  EXPECT_FALSE(evaluate.keeps_wrong(unknowns, at.field));
+  auto moved = unknowns;
+  for (int node : {model.contact_nodes[model.points[2].places[0]]}) moved.u[node * 2] += model.points[2].mesh_size;
+  EXPECT_TRUE(evaluate.keeps_wrong(moved, at.field));
   at.field.state[2] = ContactState::open;
-  EXPECT_FALSE(evaluate.keeps_far(at.field));
+  EXPECT_FALSE(evaluate.keeps_wrong(moved, at.field));
 }
 
 }  // namespace

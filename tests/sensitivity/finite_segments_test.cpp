@@ -225,28 +225,6 @@ TEST(FiniteSegments, FrictionWorkAndStrainEnergyAddUpToTheWorkDone) {
   }
 }
 
-TEST(FiniteSegments, JumpNoMoreThanNodeToSegment) {
-  // largest second difference of the force on the die as it slides over four facets, of the force: both have the corner
-  // of the die pass over vertices
-  const auto jump = [](bool segment) {
-    Ironing of;
-    of.segment = segment;
-    Scene scene = ironing_segments(of);
-    scene.legs = {{1, 3}, {2, 35}};
-    const auto s = run(scene, MonolithicAL{});
-    EXPECT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
-    double most = 0;
-    for (int n = 12; n + 1 < static_cast<int>(s.trajectory.increments.size()); ++n) {  // once it slips
-      const auto second = [&](const char* of_force) {
-        return s.value(of_force, n + 1) - 2 * s.value(of_force, n) + s.value(of_force, n - 1);
-      };
-      most = larger(most, std::hypot(second("x"), second("y")));
-    }
-    return most / std::abs(s.value("y"));
-  };
-  EXPECT_LE(jump(true), jump(false));
-}
-
 TEST(FiniteSegments, DoNotKnowDirectionsInSpace) {
   for (const double from : {0.8, 2.7})
     for (double turned : {0.5, 2.9}) {

@@ -19,8 +19,7 @@ Input read(const nlohmann::json& document, const std::filesystem::path& name);
 CaseResult run(nlohmann::json document, const nlohmann::json& method, const std::filesystem::path& name);
 
 /// Scales of the monolithic method that all come to the one solution of a scene. A large one comes, where points slide
-/// along facets at finite strain, to a vertex at which neither facet has an equilibrium: the run says so
-/// (held_on_facet), and its answer is another.
+/// along facets at finite strain, to a vertex at which neither facet has an equilibrium, and fails.
 std::vector<nlohmann::json> scales_of(const nlohmann::json& scene);
 
 }  // namespace stickslip::cases

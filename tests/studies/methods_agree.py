@@ -24,7 +24,7 @@ import sys
 import tempfile
 
 # Warnings that tell of more solutions than one, of another path, or of a method that is far from its limit.
-REASONS = {"non_unique", "branch_ends", "cut_steps", "held_on_facet", "soft_penalty", "folded_element",
+REASONS = {"non_unique", "branch_ends", "cut_steps", "soft_penalty", "folded_element",
            "unstable"}
 ALIKE = 1e-5  # what is asked of answers, as a share of their kind's size
 METHODS = {

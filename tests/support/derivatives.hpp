@@ -11,17 +11,20 @@
 namespace stickslip::derivatives {
 
 using Complex = std::complex<double>;
+inline constexpr int at_once = 4;  ///< inputs seeded together, as in direct differentiation
 
 /// Jacobian of f at x, a column for each input. `f` takes a Vector<T> and gives a Vector<T>, for any scalar T.
 template <class F>
 Matrix<double> by_dual(F&& f, const Vector<double>& x) {
   Matrix<double> jacobian;
-  for (Eigen::Index j = 0; j < x.size(); ++j) {
-    Vector<Dual<1>> seeded = x.unaryExpr([](double v) { return Dual<1>(v); });
-    seeded[j].d[0] = 1;
-    const Vector<Dual<1>> y = f(seeded);
+  for (Eigen::Index first = 0; first < x.size(); first += at_once) {
+    const int count = static_cast<int>(std::min<Eigen::Index>(at_once, x.size() - first));
+    Vector<Dual<at_once>> seeded = x.unaryExpr([](double v) { return Dual<at_once>(v); });
+    for (int k = 0; k < count; ++k) seeded[first + k].d[k] = 1;
+    const Vector<Dual<at_once>> y = f(seeded);
     jacobian.conservativeResize(y.size(), x.size());
-    for (Eigen::Index i = 0; i < y.size(); ++i) jacobian(i, j) = y[i].d[0];
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      for (int k = 0; k < count; ++k) jacobian(i, first + k) = y[i].d[k];
   }
   return jacobian;
 }

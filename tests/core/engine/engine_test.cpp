@@ -17,27 +17,26 @@ std::vector<Scene> scenes_with_and_without_friction() {
 /// Derivative of all rows of the residual along an increment (all dofs, scaled multipliers), in the problem's branches.
 BlockVector<double> along(const EngineProblem& problem, const Vector<double>& du, const Vector<double>& dl,
                           bool unknown) {
-  using D1 = Dual<1>;
-  auto lift = [](double x) { return D1(x); };
-  const auto slots = make_slots<D1>(problem.model, problem.scene.as<D1>());
-  RegularisationField<D1> rho;
-  for (const auto& r : problem.rho) rho.push_back({D1(r.normal), D1(r.tangential)});
-  History<D1> previous;
-  for_each_part([&](Vector<D1>& part, const Vector<double>& values) { part = values.unaryExpr(lift); }, previous,
+  auto lift = [](double x) { return Direction(x); };
+  const auto slots = make_slots<Direction>(problem.model, problem.scene.as<Direction>());
+  RegularisationField<Direction> rho;
+  for (const auto& r : problem.rho) rho.push_back({Direction(r.normal), Direction(r.tangential)});
+  History<Direction> previous;
+  for_each_part([&](Vector<Direction>& part, const Vector<double>& values) { part = values.unaryExpr(lift); }, previous,
                 problem.previous);
-  Vector<D1> u = problem.u.unaryExpr(lift), multiplier = problem.multiplier.unaryExpr(lift);
+  Vector<Direction> u = problem.u.unaryExpr(lift), multiplier = problem.multiplier.unaryExpr(lift);
   for (Eigen::Index i = 0; i < u.size(); ++i) u[i].d[0] = du[i];
   for (std::size_t p = 0; unknown && p < rho.size(); ++p)
     for (int c = 0; c < problem.model.points[p].components(); ++c) {
       const int k = problem.model.points[p].multiplier + c;
       multiplier[k].d[0] = dl[k] * (c == 0 ? problem.rho[p].normal : problem.rho[p].tangential);
     }
-  const ContactInput<D1> input{problem.model, slots, rho, previous, ConeRadius::augmented, 1.0};
-  const auto field = evaluate_contact<D1>(input, to_compact(problem.model, u), multiplier, &problem.states);
-  Vector<D1> rows = bulk_forces(problem.model, slots, u, {});
+  const ContactInput<Direction> input{problem.model, slots, rho, previous, ConeRadius::augmented, 1.0};
+  const auto field = evaluate_contact<Direction>(input, to_compact(problem.model, u), multiplier, &problem.states);
+  Vector<Direction> rows = bulk_forces(problem.model, slots, u, {});
   add_compact(problem.model, contact_forces(problem.model, slots, field), rows);
-  const Vector<D1> rows_l = multiplier_residual(problem.model, slots, field.traction, multiplier);
-  auto derivative = [](const D1& x) { return x.d[0]; };
+  const Vector<Direction> rows_l = multiplier_residual(problem.model, slots, field.traction, multiplier);
+  auto derivative = [](const Direction& x) { return x.d[0]; };
   return {rows.unaryExpr(derivative), rows_l.unaryExpr(derivative)};
 }
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/model/slots.hpp"
+#include "tests/support/compiled_slots.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -57,7 +57,7 @@ TEST(DesignVelocity, LeavesAllOtherSidesWhereTheyAreUnlessToldWhatStays) {
 TEST(DesignVelocity, IsHowCoordinatesDependOnTheParameter) {
   const Scene scene = scenes::shaped_boxes(5, 4, "Q4", false);
   const Model model = make_model(scene);
-  auto numbers = scene.as<Dual<1>>();
+  auto numbers = scene.as<Direction>();
   const auto& velocity = model.velocities[1];
   numbers.at_slot[velocity.slot].d[0] = 1;
   const auto points = initial_points(model, numbers);

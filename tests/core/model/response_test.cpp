@@ -263,10 +263,10 @@ TEST(HalfWidth, IsANumberWherePressuresAreRoundingOfEitherSign) {
 
 TEST(HalfWidth, IsZeroWithAFiniteDerivativeWhereOneNodeOrNoneTouches) {
   auto b = block({response("a", Kind::contact_half_width, "sole")});
-  const auto slots = make_slots<Dual<1>>(b.model, b.scene.as<Dual<1>>());
+  const auto slots = make_slots<Direction>(b.model, b.scene.as<Direction>());
   for (double pressure : {0.0, 2.0}) {
-    auto state = initial_state<Dual<1>>(b.model, slots);
-    state.contact.traction[b.model.points[2].multiplier] = Dual<1>(-pressure, Dual<1>::Gradient(0.5));
+    auto state = initial_state<Direction>(b.model, slots);
+    state.contact.traction[b.model.points[2].multiplier] = Direction(-pressure, Direction::Gradient(0.5));
     const auto a = evaluate_responses(b.model, slots, state, 1.0)[0];
     EXPECT_EQ(a.v, 0);
     EXPECT_TRUE(std::isfinite(a.d[0])) << pressure;

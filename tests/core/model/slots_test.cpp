@@ -107,8 +107,8 @@ void for_every_parameter(Check&& check) {
 
 std::vector<Vector<double>> by_dual(const Scene& scene, const Model& model, std::size_t j) {
   std::vector<Vector<double>> out;
-  for (const auto& group : groups(model, make_slots<Dual<1>>(model, shifted(scene, j, Dual<1>::seed(0.0, 0)))))
-    out.push_back(group.unaryExpr([](const Dual<1>& x) { return x.d[0]; }));
+  for (const auto& group : groups(model, make_slots<Direction>(model, shifted(scene, j, Direction::seed(0.0, 0)))))
+    out.push_back(group.unaryExpr([](const Direction& x) { return x.d[0]; }));
   return out;
 }
 
