@@ -91,6 +91,7 @@ std::vector<StepResult> gather_steps(const CaseResult& result, const StepReader&
     step.undetermined = read.open.contacts;
     step.open_responses = read.open.responses;
     step.at_vertex = read.at_vertex;
+    step.at_end = read.at_end;
     step.contacts = read.contacts;
     if (n < result.gradients.of_responses.size()) step.sensitivities = result.gradients.of_responses[n];
     if (n < result.gradients.records.size()) step.scheme = result.gradients.records[n];

@@ -52,7 +52,7 @@ struct StepResult {
   std::vector<BodyMeasures> bodies;            ///< where its state may have been let go; else empty
   std::vector<ContactMeasures> contacts = {};  ///< likewise
   /// As in a StepReading (studies/run/step_reader.hpp).
-  std::vector<char> undetermined, at_vertex, open_responses;
+  std::vector<char> undetermined, at_vertex, at_end, open_responses;
   std::optional<SchemeRecord> scheme;  ///< of the increment; only where the scheme iterates
   /// Responses x parameters; empty where there are none. No numbers of responses that are not determined.
   Matrix<double> sensitivities;

@@ -72,7 +72,7 @@ void add_unstable_steps(const CaseResult& result, std::vector<Warning>& warnings
                                   count, steps.size(), first->increment->time)});
 }
 
-/// Contacts whose forces equilibrium leaves open, and points on a vertex.
+/// Contacts whose forces equilibrium leaves open, and points on a vertex or at an end.
 void add_undetermined_contacts(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& contacts = result.problem->model.scene.contacts;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
@@ -92,6 +92,13 @@ void add_undetermined_contacts(const CaseResult& result, std::vector<Warning>& w
            R"(smooth the master, integrate over segments ("discretization": "segment"), or shift a mesh a little)",
            fmt::format("{}: in {} of {} steps a point begins or ends on a vertex of the master's facets: each of "
                        "the two facets may lead to a solution of its own, and rounding decides between them",
+                       name, n, steps)});
+    if (const long n = steps_with(result, c, &StepResult::at_end); n > 0)
+      warnings.push_back(
+          {WarningCode::non_unique, name, 1,
+           R"(integrate over segments ("discretization": "segment"), take the other side as the slave, or smaller steps)",
+           fmt::format("{}: in {} of {} steps a node that presses comes to an end of its master: friction may hold it "
+                       "there, or let it go, and methods may settle on different ones",
                        name, n, steps)});
   }
 }

@@ -14,6 +14,31 @@ bool flows_on(const State<double>& from, const State<double>& to) {
   return (to.displacement - from.displacement).cwiseAbs().maxCoeff() > rest * to.displacement.cwiseAbs().maxCoeff();
 }
 
+/// Per contact, whether a point with friction is at a free end of its master in a step: held on what counts as the
+/// master past the end, or let go although it pressed before. Empty if there is none.
+std::vector<char> contacts_at_ends(const Model& model, const State<double>& before, const State<double>& state) {
+  constexpr double rounding = 1e-9;  // of a facet
+  std::vector<char> contacts;
+  if (!model.slides_along_curves()) return contacts;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto& point = model.points[p];
+    if (point.curve < 0 || point.tangents == 0 || model.curves[point.curve].is_integrated()) continue;
+    const Facing &now = state.contact.facing[p], &last = before.contact.facing[p];
+    const auto is_past_end = [&] {
+      const Patch& patch = model.curves[point.curve].patches[now.patch];
+      return (patch.previous == Patch::none && now.xi < -rounding) ||
+             (patch.next == Patch::none && now.xi > 1 + rounding);
+    };
+    const bool is_held = state.contact.state[p] != ContactState::open && now.patch != Patch::none && is_past_end();
+    const bool is_let_go =
+        before.contact.state[p] != ContactState::open && last.patch != Patch::none && now.patch == Patch::none;
+    if (!is_held && !is_let_go) continue;
+    contacts.resize(model.scene.contacts.size());
+    contacts[point.contact] = 1;
+  }
+  return contacts;
+}
+
 }  // namespace
 
 StepReader::StepReader(const Problem& problem, const Method& method)
@@ -31,6 +56,7 @@ StepReading StepReader::read(const State<double>& before, double start, const In
   step.at_master_kink =
       step.margins.vertex <= weak_margin && integration_margin(model, slots, state, increment.time) <= weak_margin;
   step.at_vertex = contacts_at_vertices(model, slots, before, start, state, increment.time, open_.compliance());
+  step.at_end = contacts_at_ends(model, before, state);
   step.responses = evaluate_responses(model, slots, state, increment.time);
   if (open_.is_called_for()) step.open = open_.of(state, increment.time, step.responses);
   for (std::size_t b = 0; lets_go && b < model.bodies.size(); ++b)

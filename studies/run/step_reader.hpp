@@ -18,6 +18,7 @@ struct StepReading {
   std::vector<ContactMeasures> contacts;  ///< likewise
   OpenResponses::Found open;
   std::vector<char> at_vertex;  ///< per contact, whether a point is or was on a vertex (contacts_at_vertices())
+  std::vector<char> at_end;  ///< likewise, whether one with friction is held by an end of its master, or let go there
   bool at_master_kink = false;  ///< integration_margin() counts as zero: no side of a derivative is known
 };
 

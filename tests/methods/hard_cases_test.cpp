@@ -254,6 +254,8 @@ TEST(HardCases, ABodyThatNothingPressesSlidesWithoutTraction) {
       EXPECT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << steps << r.trajectory.message;
       EXPECT_NEAR(r.value("press"), 0, 1e-10 * 1000 * 0.001) << "of E u, what a unit depth could bear";
       EXPECT_NEAR(r.value("u"), 0.001, 1e-10);
+      // that of the floor and one a little above it; branches that differ in the rounding of tractions are not counted
+      for (const auto& increment : r.trajectory.increments) EXPECT_LE(increment.others.size(), 1u);
     }
 }
 

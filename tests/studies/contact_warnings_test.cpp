@@ -31,6 +31,33 @@ std::vector<Warning> of_code(const CaseResult& result, WarningCode code) {
   return found;
 }
 
+// --- at nodes ----------------------------------------------------------------------------------------------------
+
+TEST(ContactAtNodes, HasASmoothMasterAtFiniteStrainUnlessFacetsAreAskedFor) {
+  const std::string file = std::string(STICKSLIP_SOURCE_DIR) + "/studies/hard/pin-over-a-vertex.json";
+  json scene = cases::load(file);
+  const auto smoothing = [&] { return cases::read(scene, file).scene.contacts[0].smoothing; };
+  EXPECT_EQ(smoothing(), Smoothing::catmull_rom);
+  scene["contacts"]["t"]["surface"] = "faceted";
+  EXPECT_EQ(smoothing(), Smoothing::none);
+  for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) {
+    const auto result = cases::run(scene, {{method, json::object()}}, file);
+    EXPECT_FALSE(is_converged(result.status())) << method;
+    EXPECT_THAT(result.message(), HasSubstr("or a smooth master")) << method;
+  }
+}
+
+/// One method lets the node go at the end, the others hold it. Both are equilibria; the one that lets it go says so.
+TEST(ContactAtNodes, SayWhereANodeIsHeldOrLetGoAtAnEndOfTheMaster) {
+  const std::string file = std::string(STICKSLIP_SOURCE_DIR) + "/studies/hard/node-let-go-at-an-end.json";
+  json scene = cases::load(file);
+  const auto let_go = of_code(cases::run(scene, {{"uzawa_al", json::object()}}, file), WarningCode::non_unique);
+  ASSERT_EQ(let_go.size(), 1u);
+  EXPECT_THAT(let_go[0].text, HasSubstr("in 1 of 8 steps a node that presses comes to an end of its master"));
+  scene["contacts"]["c"].erase("surface");  // the default, segments, has no such node
+  EXPECT_TRUE(of_code(cases::run(scene, {{"uzawa_al", json::object()}}, file), WarningCode::non_unique).empty());
+}
+
 // --- the master's nodes ------------------------------------------------------------------------------------------
 
 /// A block of one element over three elements of a slab, whose nodes are the slaves: none is under the block.
