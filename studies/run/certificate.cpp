@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/io/input_fault.hpp"
+#include "studies/io/json_document.hpp"
 
 namespace stickslip {
 namespace {
@@ -22,7 +23,9 @@ json parsed_file(const fs::path& file) {
   try {
     return json::parse(stream);
   } catch (const json::exception& fault) {
-    throw InputFault(file.string() + ": " + fault.what());
+    Diagnostics located;
+    JsonDocument::read(file.string(), located);
+    throw InputFault(located.has_errors() ? located.text() : file.string() + ": " + fault.what());
   }
 }
 

@@ -22,6 +22,7 @@ struct Material {
   std::vector<std::array<double, 2>> rows;  ///< (equivalent plastic strain, bound), from 0 to infinity
 
   explicit Material(const Body& body) {
+    if (body.spring()) return;
     const auto law = body.given.at("material").begin();
     const Json& given = law.value();
     const double nu = given.at("nu");
@@ -210,9 +211,9 @@ std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& 
 // --- bodies ----------------------------------------------------------------------------------------------------------
 
 /// What a point of a body answers to H, of which plane stress decides a part.
-Answer answer_of(const Scene& scene, const Body& body, const Point& point, Mat3& H, Particle& particle) {
+Answer answer_of(const Scene& scene, const Body& body, const Material& material, const Point& point, Mat3& H,
+                 Particle& particle) {
   if (body.spring()) return {body.stiffness() * H, (body.stiffness() * H).cwiseProduct(H).sum() / 2};
-  const Material material(body);
   const Vec3 axis = point.gradient.row(1).normalized();
   if (!body.solid()) return respond_along(material, axis, H, scene.finite, particle);
   return scene.plane_stress ? respond_in_plane_stress(material, H, scene.finite, particle)
@@ -220,8 +221,8 @@ Answer answer_of(const Scene& scene, const Body& body, const Point& point, Mat3&
 }
 
 /// Forces of an element on its nodes.
-Field element_forces(const Scene& scene, const Body& body, const std::vector<Point>& points, const Field& u,
-                     std::vector<Particle>& particles, Bodies& bodies) {
+Field element_forces(const Scene& scene, const Body& body, const Material& material, const std::vector<Point>& points,
+                     const Field& u, std::vector<Particle>& particles, Bodies& bodies) {
   const bool finite = scene.finite, mean = body.averages();
   const Mat3 I = Mat3::Identity();
   const auto change = [&](const Mat3& H) { return finite ? volume_change(H) : H.trace(); };
@@ -237,7 +238,7 @@ Field element_forces(const Scene& scene, const Body& body, const std::vector<Poi
     const Mat3 H = points[q].displacement_gradient(u), F = finite ? Mat3(I + H) : I;
     Mat3 h = H;
     if (mean) h += (finite ? std::expm1((std::log1p(theta) - std::log1p(change(H))) / 3) : (theta - change(H)) / 3) * F;
-    const auto answer = answer_of(scene, body, points[q], h, particles[q]);
+    const auto answer = answer_of(scene, body, material, points[q], h, particles[q]);
     const double volume = particles[q].volume = points[q].volume;
     bodies.inverted |= answer.inverted;
     bodies.energy += answer.energy * volume;
@@ -300,7 +301,7 @@ double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge
   const Point point = point_of(scene, body, element, at);
   Mat3 H = point.displacement_gradient(u(Eigen::all, element));
   Particle none;
-  answer_of(scene, body, point, H, none);
+  answer_of(scene, body, Material(body), point, H, none);
   return 1 + H(2, 2);
 }
 
@@ -362,15 +363,17 @@ Bodies deform(const Scene& scene, const Field& u, const Bodies& before) {
   bodies.particles.resize(scene.bodies.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
+    const Material material(body);
     const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area();
-    const double stiffness = body.spring() ? body.stiffness().maxCoeff() : Material(body).E * depth;
+    const double stiffness = body.spring() ? body.stiffness().maxCoeff() : material.E * depth;
     bodies.stiffness = std::max(bodies.stiffness, stiffness);
     bodies.particles[b].resize(body.elements.size());
     for (std::size_t e = 0; e < body.elements.size(); ++e) {
       const Nodes& element = body.elements[e];
       const auto points = points_of(scene, body, element);
       bodies.particles[b][e].resize(points.size());
-      const auto forces = element_forces(scene, body, points, u(Eigen::all, element), bodies.particles[b][e], bodies);
+      const auto forces =
+          element_forces(scene, body, material, points, u(Eigen::all, element), bodies.particles[b][e], bodies);
       bodies.forces(Eigen::all, element) += forces;
       bodies.largest = std::max(bodies.largest, forces.colwise().norm().maxCoeff());
     }

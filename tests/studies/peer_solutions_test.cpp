@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "studies/io/input_fault.hpp"
+#include "studies/run/certificate.hpp"
 #include "studies/run/solution_file.hpp"
 #include "studies/sweep/study_cell.hpp"
 
@@ -165,6 +167,17 @@ TEST_F(PeerSolutions, ThatCannotBeReadAreFaultsOfTheStudy) {
   entry["file"] = "scene.json";
   EXPECT_THAT(faults(study_with({entry})), HasSubstr(R"(must have "schema": "stickslip_solution")"));
   EXPECT_THAT(faults(study_with(json::object())), HasSubstr("/solutions: is {}; must be a list"));
+}
+
+TEST_F(PeerSolutions, ThatAreNoJsonAreToldWithTheirPlace) {
+  std::ofstream(folder_ / "torn.json") << "{\n \"schema\": \"stickslip_solution\",\n \"increments\": [{\"time\": 1,}]";
+  try {
+    read_solution(folder_ / "torn.json");
+    ADD_FAILURE() << "a torn file was read";
+  } catch (const InputFault& fault) {
+    EXPECT_THAT(fault.what(), HasSubstr("torn.json:3:")) << fault.what();
+    EXPECT_THAT(fault.what(), HasSubstr("comma")) << fault.what();
+  }
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::dense_factor_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -125,4 +125,4 @@ TEST(DenseFactor, OfAComplexMatrixCarriesTheDerivative) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::dense_factor_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace stickslip {
+namespace stickslip::linear_solver_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -585,4 +585,4 @@ TEST(LinearSolver, CanBeMoved) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::linear_solver_test

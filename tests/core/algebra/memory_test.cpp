@@ -11,7 +11,7 @@
 
 #include "core/algebra/linear_solver.hpp"
 
-namespace stickslip {
+namespace stickslip::memory_test {
 namespace {
 
 /// A symmetric positive definite matrix of which every row is joined with four others at random, which no ordering can
@@ -77,4 +77,4 @@ TEST(LinearSolver, TellsTheEndOfMemoryFromASingularMatrix) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::memory_test

@@ -8,7 +8,7 @@
 
 #include "tests/core/algebra/every_operation.hpp"
 
-namespace stickslip {
+namespace stickslip::reverse_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -77,4 +77,4 @@ TEST(Tape, StopsWhereASweepIsToStopAndForgetsWhatIsRewound) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::reverse_test

@@ -9,7 +9,7 @@
 
 #include "tests/core/algebra/every_operation.hpp"
 
-namespace stickslip {
+namespace stickslip::scalar_test {
 namespace {
 
 using Complex = std::complex<double>;
@@ -152,4 +152,4 @@ TEST(DotAndNorm, DoNotConjugate) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::scalar_test

@@ -6,7 +6,7 @@
 #include "core/algebra/linear_solver.hpp"
 #include "tests/support/derivatives.hpp"
 
-namespace stickslip {
+namespace stickslip::schur_complement_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -164,4 +164,4 @@ TEST(SchurComplement, OfAComplexMatrixHasTheDerivativeOfTheRealOne) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::schur_complement_test

@@ -10,7 +10,7 @@
 
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::box_tree_test {
 namespace {
 
 /// Small boxes along a way that leads from the origin to n.
@@ -90,4 +90,4 @@ TEST(Bounds, OfNormalsAreAnyUnlessTheyAreSet) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::box_tree_test

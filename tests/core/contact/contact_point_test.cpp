@@ -9,7 +9,7 @@
 #include "core/contact/surfaces.hpp"
 #include "tests/support/derivatives.hpp"
 
-namespace stickslip {
+namespace stickslip::contact_point_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -195,4 +195,4 @@ TEST(ContactPointDerivatives, AreThoseOfTheComplexStepInEveryBranchForAllItReads
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::contact_point_test

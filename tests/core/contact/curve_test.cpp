@@ -11,7 +11,7 @@
 #include "core/contact/curve_search.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::curve_test {
 namespace {
 
 using Place = Vec<double, 2>;
@@ -237,4 +237,4 @@ TEST(CurveSearch, FacesNothingWhereATrialIsOutOfBounds) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::curve_test

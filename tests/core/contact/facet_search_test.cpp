@@ -12,7 +12,7 @@
 #include "core/contact/segments.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::facet_search_test {
 namespace {
 
 using Facets = std::vector<std::vector<int>>;
@@ -117,4 +117,4 @@ TEST(FacetSearch, FindsNothingWherePlacesAreNotFinite) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::facet_search_test

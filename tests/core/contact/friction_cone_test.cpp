@@ -10,7 +10,7 @@
 
 #include "tests/support/derivatives.hpp"
 
-namespace stickslip {
+namespace stickslip::friction_cone_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -237,4 +237,4 @@ TEST(FrictionlessProjection, SlidesWhereverItIsClosed) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::friction_cone_test

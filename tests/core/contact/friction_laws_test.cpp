@@ -3,7 +3,7 @@
 
 #include "core/contact/friction_law.hpp"
 
-namespace stickslip {
+namespace stickslip::friction_laws_test {
 namespace {
 
 using D = Dual<1>;
@@ -74,4 +74,4 @@ void expect_laws(const std::variant<L...>*) {
 TEST(FrictionLaws, AreWhatTheirDescriptionsSay) { expect_laws(static_cast<const FrictionLaws<double>*>(nullptr)); }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::friction_laws_test

@@ -17,7 +17,7 @@
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::properties_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -457,4 +457,4 @@ TEST(ContactPointProperties, ForcesTurnWithThePointInSpace) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::properties_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stickslip {
+namespace stickslip::rigid_surfaces_test {
 namespace {
 
 const Numbers<double> no_slots;
@@ -34,4 +34,4 @@ TEST(RigidSurfaces, SayWhereTheyAreAvailable) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::rigid_surfaces_test

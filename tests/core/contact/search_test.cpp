@@ -7,7 +7,7 @@
 
 #include "tests/support/closest.hpp"
 
-namespace stickslip {
+namespace stickslip::search_test {
 namespace {
 
 using Facets = std::vector<std::vector<int>>;
@@ -118,4 +118,4 @@ TEST(ClosestPoint, IsTheSameInUnitsOfAnySize) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::search_test

@@ -8,7 +8,7 @@
 #include "core/contact/rigid_surfaces.hpp"
 #include "core/contact/segments.hpp"
 
-namespace stickslip {
+namespace stickslip::small_motions_test {
 namespace {
 
 using Place = Vec<double, 2>;
@@ -146,4 +146,4 @@ TEST(SmallMotions, OverSegmentsHaveTheirGapAndSlip) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::small_motions_test

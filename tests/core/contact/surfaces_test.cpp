@@ -10,7 +10,7 @@
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::surfaces_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -231,4 +231,4 @@ TEST(Derivatives, OfEverySurfaceAreThoseOfTheComplexStep) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::surfaces_test

@@ -8,7 +8,7 @@
 #include "core/engine/body_matrix.hpp"
 #include "tests/support/engine_problem.hpp"
 
-namespace stickslip {
+namespace stickslip::condensation_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -113,4 +113,4 @@ TEST(Condensation, OfABodyThatNothingHoldsWithoutContactIsRefused) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::condensation_test

@@ -7,7 +7,7 @@
 #include "tests/support/engine_problem.hpp"
 #include "tests/support/sliding_scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::condensed_tangent_test {
 namespace {
 
 struct Pair {
@@ -176,4 +176,4 @@ TEST(CondensedTangent, IsOfContactBetweenBodiesThatChange) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::condensed_tangent_test

@@ -5,7 +5,7 @@
 #include "tests/support/engine_problem.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::engine_test {
 namespace {
 
 std::vector<Scene> scenes_with_and_without_friction() {
@@ -192,4 +192,4 @@ TEST(Condensation, HasASymmetricSchurComplementWithTheRigidModesOfAFreeBody) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::engine_test

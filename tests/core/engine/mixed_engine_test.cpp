@@ -4,7 +4,7 @@
 #include "core/engine/engine_price.hpp"
 #include "tests/support/engine_problem.hpp"
 
-namespace stickslip {
+namespace stickslip::mixed_engine_test {
 namespace {
 
 /// The two engines of a mixed scene at a time at which the supports have moved. What is inside the condensed body is in
@@ -167,4 +167,4 @@ TEST(MixedEngine, IsOfMixedScenesAlone) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::mixed_engine_test

@@ -6,7 +6,7 @@
 #include "tests/support/engine_problem.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::tangent_update_test {
 namespace {
 
 /// The problem with points 1, 2, ... turned into other branches: stick, slip, open by turns.
@@ -204,4 +204,4 @@ TEST(TangentUpdate, NeedsTheMultiplierRowsOfTheFactor) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::tangent_update_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace stickslip {
+namespace stickslip::decimal_test {
 namespace {
 
 TEST(Decimal, ReadsWholeTexts) {
@@ -16,4 +16,4 @@ TEST(Decimal, RefusesWhatIsNoNumberOrOutOfRange) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::decimal_test

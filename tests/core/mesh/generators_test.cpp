@@ -10,7 +10,7 @@
 #include "core/mesh/quality.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::generators_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -634,4 +634,4 @@ TEST(InvertedElements, AreFoundWhetherFlatTurnedOrOfNoLength) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::generators_test

@@ -6,7 +6,7 @@
 #include "core/mesh/msh_reader.hpp"
 #include "core/mesh/quality.hpp"
 
-namespace stickslip {
+namespace stickslip::mesh_faults_test {
 namespace {
 
 /// Two squares side by side on (0, 0) to (2, 1) in MSH 2.2, their bottom and top lines, and a point; `more`: lines of
@@ -100,4 +100,4 @@ TEST(MeshFaults, AnImportedElementWithoutDigitsIsRefused) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::mesh_faults_test

@@ -11,7 +11,7 @@
 
 #include "core/mesh/quality.hpp"
 
-namespace stickslip {
+namespace stickslip::msh_reader_test {
 namespace {
 
 std::string content(const std::string& path) {
@@ -376,4 +376,4 @@ TEST(HalfDisksForTheStudies, HaveACoarseOneInTheOlderFormat) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::msh_reader_test

@@ -6,7 +6,7 @@
 
 #include "core/mesh/generators.hpp"
 
-namespace stickslip {
+namespace stickslip::sides_test {
 namespace {
 
 /// 3 x 2 cells; nodes 0 .. 3 at the bottom, 8 .. 11 at the top.
@@ -93,4 +93,4 @@ TEST(NearestName, HasTheLeastNumberOfEdits) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::sides_test

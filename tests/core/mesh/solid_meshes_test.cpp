@@ -12,7 +12,7 @@
 #include "core/solids/continuum.hpp"
 #include "core/solids/edges.hpp"
 
-namespace stickslip {
+namespace stickslip::solid_meshes_test {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -140,4 +140,4 @@ TEST(SolidMeshes, AreRefusedWithAReason) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::solid_meshes_test

@@ -11,7 +11,7 @@
 #include "core/mesh/middles.hpp"
 #include "core/mesh/msh_reader.hpp"
 
-namespace stickslip {
+namespace stickslip::split_test {
 namespace {
 
 ImportedMesh imported_box(const BoxMesh& box, const std::string& element) {
@@ -114,4 +114,4 @@ TEST(Split, KeepsSidesOfAFileClosedAndInOrder) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::split_test

@@ -7,7 +7,7 @@
 #include "core/model/slots.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::contact_pairing_test {
 namespace {
 
 using testing::ElementsAre;
@@ -188,4 +188,4 @@ TEST(TieLengths, AreRoundingsOfTheMeshAndOfThePlaceItStandsAt) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::contact_pairing_test

@@ -7,7 +7,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::design_velocity_test {
 namespace {
 
 /// Rounding of a Laplace solve on a few dozen nodes.
@@ -89,4 +89,4 @@ TEST(ShapeExtension, IsSharedByTheNodesOfASide) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::design_velocity_test

@@ -7,7 +7,7 @@
 #include "core/mesh/generators.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::model_test {
 namespace {
 
 using scenes::support;
@@ -214,4 +214,4 @@ TEST(ResponsePlaces, OfAContactAreTheNearestContactPoint) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::model_test

@@ -9,7 +9,7 @@
 #include "tests/support/derivatives.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::response_test {
 namespace {
 
 using scenes::response;
@@ -274,4 +274,4 @@ TEST(HalfWidth, IsZeroWithAFiniteDerivativeWhereOneNodeOrNoneTouches) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::response_test

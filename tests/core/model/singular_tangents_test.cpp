@@ -5,7 +5,7 @@
 
 #include "tests/support/engine_problem.hpp"
 
-namespace stickslip {
+namespace stickslip::singular_tangents_test {
 namespace {
 
 TEST(FactorReuse, SavesTheFactorisationOfTheSameTangentAndNoOther) {
@@ -101,4 +101,4 @@ TEST(SingularTangents, ThatAreNotFiniteAreNotTakenForTheOnesBefore) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::singular_tangents_test

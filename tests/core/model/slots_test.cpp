@@ -11,7 +11,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::slots_test {
 namespace {
 
 using scenes::parameter;
@@ -329,4 +329,4 @@ TEST(BulkForces, VanishInARigidTranslationOfFreeBodies) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::slots_test

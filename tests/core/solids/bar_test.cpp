@@ -8,7 +8,7 @@
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::bar_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -81,4 +81,4 @@ TYPED_TEST(Bar, HasForceAndStiffnessOfItsEnergy) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::bar_test

@@ -10,7 +10,7 @@
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::continuum_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -228,4 +228,4 @@ TEST(LinearElasticLaw, HasTheStressesOfHookesLaw) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::continuum_test

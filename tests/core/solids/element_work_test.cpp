@@ -6,7 +6,7 @@
 #include "core/solids/materials.hpp"
 #include "tests/support/derivatives.hpp"
 
-namespace stickslip {
+namespace stickslip::element_work_test {
 namespace {
 
 /// A convex element away from the axis: the corners and middles of the reference element, moved a little.
@@ -149,4 +149,4 @@ TEST(ElementWork, HasThoseOfEachRowOfAHardeningTable) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::element_work_test

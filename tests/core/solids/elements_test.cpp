@@ -13,7 +13,7 @@
 #include "core/solids/linear_elastic.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::elements_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -343,4 +343,4 @@ TEST(SideShares, OfAQuadraticEdgeSumUpToTheArcItFollowsToFourthOrder) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::elements_test

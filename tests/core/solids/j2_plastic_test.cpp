@@ -9,7 +9,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/tensors.hpp"
 
-namespace stickslip {
+namespace stickslip::j2_plastic_test {
 namespace {
 
 constexpr double E = 200, nu = 0.3, G = E / 2.6, yield = 1.5, hardening = 9;
@@ -271,4 +271,4 @@ TEST(Logarithms, OfPlaneTensorsAreThoseOfAnEigensolver) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::j2_plastic_test

@@ -10,7 +10,7 @@
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::mean_dilatation_test {
 namespace {
 
 using Places = Mat<double, 2, 4>;
@@ -97,4 +97,4 @@ TEST(MeanDilatation, HasOneVolumeAndNoForceWhereItIsInverted) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::mean_dilatation_test

@@ -7,7 +7,7 @@
 #include "tests/support/derivatives.hpp"
 #include "tests/support/tensors.hpp"
 
-namespace stickslip {
+namespace stickslip::neo_hookean_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -113,4 +113,4 @@ TEST_P(NeoHookeanLaws, HasTheStressOfItsEnergyOfRevolution) {
 INSTANTIATE_TEST_SUITE_P(Volumetric, NeoHookeanLaws, testing::Values(Volumetric::quadratic, Volumetric::log));
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::neo_hookean_test

@@ -8,7 +8,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/tensors.hpp"
 
-namespace stickslip {
+namespace stickslip::plane_stress_test {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -244,4 +244,4 @@ TEST(ThinMetal, IsThatOfSmallStrainInLogarithms) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::plane_stress_test

@@ -9,7 +9,7 @@
 #include "core/solids/neo_hookean.hpp"
 #include "tests/support/tensors.hpp"
 
-namespace stickslip {
+namespace stickslip::small_strain_limit_test {
 namespace {
 
 constexpr double E = 1000, nu = 0.3;
@@ -133,4 +133,4 @@ TEST(SmallStrainLimit, OfLogarithmsKeepsTheDigitsInAllScalars) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::small_strain_limit_test

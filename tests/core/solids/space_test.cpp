@@ -9,7 +9,7 @@
 #include "tests/support/derivatives.hpp"
 #include "tests/support/tensors.hpp"
 
-namespace stickslip {
+namespace stickslip::space_test {
 namespace {
 
 constexpr double E = 200, nu = 0.3, G = E / 2.6, lame = E * nu / ((1 + nu) * (1 - 2 * nu));
@@ -248,4 +248,4 @@ TEST(Logarithms, OfTensorsOfSpaceAreThoseOfAnEigensolver) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::space_test
