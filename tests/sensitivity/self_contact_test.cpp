@@ -164,10 +164,21 @@ TEST(SelfContact, OfABoundaryIsThatOfTheTwoSidesThatMeet) {
 }
 
 TEST(SelfContact, HasTheDerivativesOfTheWholeRun) {
-  for (const Method& method : finite_schemes()) scenes::expect_derivatives_in_both_modes(clasp(true), method);
-  for (const Geometry geometry : {Geometry::b_spline, Geometry::segments})
-    scenes::expect_derivatives_in_both_modes(clasp(true, geometry), MonolithicAL{});
-  scenes::expect_derivatives_in_both_modes(clasp(true, Geometry::segments, "Q8"), MonolithicAL{});
+  // a thin ring: the rounding of its matrix, some 1.7e-11, is more than 1e-11
+  const auto check = [](Scene scene, const Method& method) {
+    scenes::expect_derivatives_of_the_oracle(scene, method);
+    const double condition = run(scene, method).condition;
+    scenes::ask_for_objectives(scene);
+    EXPECT_LE(scenes::difference_of_modes(scene, method), 50 * unit_roundoff * condition) << name_of(method);
+  };
+  for (const Method& method : finite_schemes()) {
+    if (std::holds_alternative<UzawaAL>(method))
+      scenes::expect_derivatives_in_both_modes(clasp(true), method);
+    else
+      check(clasp(true), method);
+  }
+  for (const Geometry geometry : {Geometry::b_spline, Geometry::segments}) check(clasp(true, geometry), MonolithicAL{});
+  check(clasp(true, Geometry::segments, "Q8"), MonolithicAL{});
 }
 
 }  // namespace
