@@ -144,16 +144,18 @@ SchemeEquilibrium scheme_equilibrium(const UzawaAL& method, const Problem& probl
 ///   rests            for ten passes no change has fallen to half of the least, and D lambda has come no farther in all
 ///                    of them than four such changes. A slow mode would go on in its direction. What is left is the
 ///                    rounding of the back-solves, which the factor's condition number magnifies; up to 1e-9 of D
-///                    lambda
+///                    lambda, or of what a contact would make of the motion if D lambda is zero
 ///
 /// The rounding of Dg is that of its terms, and that of the forces that balance in it. Example: tractions do not depend
 /// on a thickness, so its Dg is this rounding alone.
 bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const RegularisationField<double>& rho,
              std::vector<Vector<Direction>>& lambda, double tolerance) {
-  double stiffest = 0, rho_over_k = 0;  // largest rho; largest rho over k: traction per force that rounds in a node
+  // largest rho; largest rho over k: traction per force that rounds in a node; largest k / A: traction per motion
+  double stiffest = 0, rho_over_k = 0, elastic = 0;
   for (std::size_t p = 0; p < rho.size(); ++p) {
     stiffest = std::max(stiffest, rho[p].normal);
     rho_over_k = std::max(rho_over_k, rho[p].normal / problem.slots.stiffness[p]);
+    elastic = std::max(elastic, problem.slots.stiffness[p] / problem.slots.geometry[p].area);
   }
   constexpr int patience = 10;
   constexpr double far = 4, most_rounding = 1e-9;
@@ -188,7 +190,8 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
         since[j] = pass;
         at_least.col(j) = after.col(j);
       }
-      const bool rests = pass - since[j] >= patience && least[j] <= most_rounding * std::max(size, carried[j]) &&
+      const double natural = std::max({size, carried[j], elastic * linearised.largest_motion()[j]});
+      const bool rests = pass - since[j] >= patience && least[j] <= most_rounding * natural &&
                          (after.col(j) - at_least.col(j)).cwiseAbs().maxCoeff() <= far * least[j];
       const double enough = std::max(tolerance * size, floors[j]);
       const bool ended = change == 0 || stalled || drifts || rests || (q < 1 && pass > 2 && left <= enough);
