@@ -15,11 +15,13 @@ namespace {
 bool may_leave(const ContactPoint& point) {
   using Master = ContactPoint::Master;
   if (point.master == Master::segments) return point.curve < 0 && point.segments[0].master[0] != Segment::none;
-  return point.master == Master::facet || point.master == Master::vertex;
+  return point.master == Master::facet || point.master == Master::vertex || point.master == Master::faces;
 }
 
 bool same_part(const ContactPoint& a, const ContactPoint& b) {
-  return a.master == b.master && a.nodes == b.nodes && a.corners == b.corners && a.segments == b.segments;
+  const bool same_faces = std::equal(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(),
+                                     [](const auto& one, const auto& other) { return one.is_part_of(other); });
+  return a.master == b.master && a.nodes == b.nodes && a.corners == b.corners && a.segments == b.segments && same_faces;
 }
 
 /// The point with the same slave node; nullptr if there is none.

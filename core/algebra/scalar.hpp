@@ -149,6 +149,12 @@ auto dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return a.cwiseProduct(b).sum();
 }
 
+/// a x b, without conjugation.
+template <class T>
+Vec<T, 3> cross(const Vec<T, 3>& a, const Vec<T, 3>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 /// Euclidean norm without conjugation; not differentiable at zero, where the caller must not use it. If squares would
 /// under- or overflow, the vector is scaled by a power of two, which rounds nothing.
 template <class A>

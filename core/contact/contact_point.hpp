@@ -19,15 +19,19 @@
 
 namespace stickslip {
 
+/// What the history keeps of a foot, in D dimensions: its place, and in space a normal and a tangent.
+template <class T, int D>
+using Feet = Vec<T, D == 3 ? 9 : D>;
+
 /// What a contact point leaves behind at the end of an increment: its local unknowns, and the history of the next.
 template <class T, int Tangents>
 struct PointOutcome {
   ContactState state = ContactState::open;
   T gap{};
-  Vec<T, Tangents> placement = Vec<T, Tangents>::Zero();     ///< s
-  Vec<T, Tangents> slip = Vec<T, Tangents>::Zero();          ///< dg_T of this increment
-  Traction<T, Tangents> traction;                            ///< t
-  Vec<T, Tangents + 1> foot = Vec<T, Tangents + 1>::Zero();  ///< place on the obstacle, in present geometry
+  Vec<T, Tangents> placement = Vec<T, Tangents>::Zero();       ///< s
+  Vec<T, Tangents> slip = Vec<T, Tangents>::Zero();            ///< dg_T of this increment
+  Traction<T, Tangents> traction;                              ///< t
+  Feet<T, Tangents + 1> foot = Feet<T, Tangents + 1>::Zero();  ///< in present geometry
 };
 
 /// Penalty / scale of a point, force per length cubed.
@@ -80,7 +84,7 @@ PointOutcome<T, Tangents> evaluate_point(const PointGeometry<T>& geometry, const
 /// foot of the last increment to this one, both on the present master, length. The slip is the tangential part of
 /// `foot_motion`. On a curved obstacle this is the chord, which differs from the arc by O(slip^3).
 template <class T, int D, int Tangents>
-PointOutcome<T, Tangents> evaluate_moved_point(const PointGeometry<T>& geometry, const Vec<T, D>& foot,
+PointOutcome<T, Tangents> evaluate_moved_point(const PointGeometry<T>& geometry, const Feet<T, D>& foot,
                                                const Vec<T, D>& foot_motion, const Traction<T, Tangents>& multiplier,
                                                const Vec<T, Tangents>& previous_placement,
                                                const PointRegularisation<T>& rho, const FrictionLaw<T>& friction,

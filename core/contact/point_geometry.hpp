@@ -38,11 +38,8 @@ auto tangent_frame(const Normal& n) {
   for (int i = 0; i < 3; ++i) first[i] = T(i == smallest ? 1 : 0) - n[smallest] * n[i];
   const T length = norm(first);
   for (int i = 0; i < 3; ++i) first[i] /= length;
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    frame(i, 0) = first[i];
-    frame(i, 1) = n[j] * first[k] - n[k] * first[j];
-  }
+  frame.col(0) = first;
+  frame.col(1) = cross(Vec<T, 3>(n), first);
   return frame;
 }
 

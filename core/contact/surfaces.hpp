@@ -1,7 +1,10 @@
-/// Geometry of a slave node against facets and vertices, and the normal that two deformable sides share. `x`: position
-/// of the slave node. The area is left to the caller.
+/// Geometry of a slave node against facets, vertices and faces, and the normal that two deformable sides share. `x`:
+/// position of the slave node. The area is left to the caller.
 #pragma once
 
+#include <algorithm>
+
+#include "core/contact/face.hpp"
 #include "core/contact/point_geometry.hpp"
 #include "core/mesh/mesh.hpp"
 
@@ -67,14 +70,52 @@ void slide_off(PointGeometry<T>& geometry, const Vec<T, 2>& x, const Vec<T, 2>& 
   geometry.weights = std::move(weights);
 }
 
-/// Outward normal of the slave side at a node, length: sum over the node's facets (solid on their left) of unit normal
-/// times facet length.
-template <class T>
-Vec<T, 2> slave_normal(const std::vector<std::pair<int, int>>& facets, const Points<T>& points) {
-  Vec<T, 2> n = Vec<T, 2>::Constant(T(0));
-  for (const auto& [a, b] : facets) {
-    n[0] += points(1, b) - points(1, a);
-    n[1] -= points(0, b) - points(0, a);
+/// Geometry against the place that is closest to x, on each face that has it: the mean over these faces, of which an edge
+/// has two and a corner several. Each has the same weights there, but other derivatives, as on the two sides of a vertex
+/// in the plane. The normal is the mean of theirs.
+///
+///   nodes     slave node, then the nodes of all faces, in the order of the weights
+///   position  node -> position
+template <class T, class Position>
+PointGeometry<T> against_faces(const Vec<T, 3>& x, const std::vector<FacePlace>& faces, const std::vector<int>& nodes,
+                               const Position& position) {
+  PointGeometry<T> g;
+  g.weights = decltype(g.weights)::Constant(static_cast<Eigen::Index>(nodes.size()), T(0));
+  g.weights[0] = T(1);
+  const T share(1.0 / static_cast<double>(faces.size()));
+  Vec<T, 3> normal = Vec<T, 3>::Constant(T(0)), foot = normal;
+  for (const auto& face : faces) {
+    std::array<Vec<T, 3>, 4> corner;
+    for (int k = 0; k < 4; ++k) corner[k] = position(face.nodes[std::min(k, face.corners - 1)]);
+    const auto at = face_foot<T>(face, x, corner);
+    normal += at.normal;
+    foot += at.position * share;
+    for (int k = 0; k < face.corners; ++k)
+      g.weights[std::find(nodes.begin(), nodes.end(), face.nodes[k]) - nodes.begin()] -= share * at.weights[k];
+  }
+  const T length = norm(normal);
+  g.normal.resize(3);
+  for (int i = 0; i < 3; ++i) g.normal[i] = normal[i] / length;
+  g.gap = dot((x - foot).eval(), g.normal);
+  g.tangents = detail::tangent_frame<T>(g.normal);
+  return g;
+}
+
+/// Outward normal of the slave side at a node: sum over the node's facets of unit normal times length, in space times
+/// area. In the plane the solid is on the left of a facet; in space its nodes are counter-clockwise seen from outside.
+template <int D, class T>
+Vec<T, D> slave_normal(const std::vector<std::vector<int>>& facets, const Points<T>& points) {
+  Vec<T, D> n = Vec<T, D>::Constant(T(0));
+  for (const auto& facet : facets) {
+    const auto between = [&](int from, int to) -> Vec<T, D> { return points.col(facet[to]) - points.col(facet[from]); };
+    if constexpr (D == 2) {
+      const Vec<T, 2> tau = between(0, 1);
+      n[0] += tau[1];
+      n[1] -= tau[0];
+    } else {
+      const bool is_triangle = facet.size() == 3;
+      n += T(0.5) * cross<T>(is_triangle ? between(0, 1) : between(0, 2), is_triangle ? between(0, 2) : between(1, 3));
+    }
   }
   return n;
 }
@@ -87,13 +128,13 @@ Vec<T, 2> slave_normal(const std::vector<std::pair<int, int>>& facets, const Poi
 /// angle between the two surfaces. The bisector is right to second order in that angle and treats both bodies alike.
 /// The master normal alone would count part of the closing motion as slip. Example: two cylinders with the ratio of
 /// contact width to radius b/R = 0.085, where that part is 3/4 of the slip.
-template <class T>
-void share_normal(PointGeometry<T>& geometry, const Vec<T, 2>& slave_normal) {
+template <int D, class T>
+void share_normal(PointGeometry<T>& geometry, const Vec<T, D>& slave_normal) {
   const T length = norm(slave_normal);
-  Vec<T, 2> mean(geometry.normal[0] - slave_normal[0] / length, geometry.normal[1] - slave_normal[1] / length);
+  Vec<T, D> mean;
+  for (int i = 0; i < D; ++i) mean[i] = geometry.normal[i] - slave_normal[i] / length;
   const T size = norm(mean);
-  for (int i = 0; i < 2; ++i) mean[i] /= size;
-  geometry.normal << mean[0], mean[1];
+  for (int i = 0; i < D; ++i) geometry.normal[i] = mean[i] / size;
   geometry.tangents = detail::tangent_frame<T>(geometry.normal);
 }
 

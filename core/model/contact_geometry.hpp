@@ -12,12 +12,12 @@ namespace stickslip::detail {
 template <class T, int D>
 struct PlacedPoint {
   PointGeometry<T> geometry;
-  /// Foot, as History::foot stores it. On an obstacle: in its frame, from the initial position of the slave node. On a
-  /// curve: coordinate on the patch less foot_reference(), and 0; where segment-integrated: mean initial arc length
-  /// less origin_of_arcs(), and 0.
-  Vec<T, D> foot = Vec<T, D>::Constant(T(0));
+  /// Foot, as History::foot stores it. On an obstacle: in its frame, from the initial position of the slave node, and
+  /// where ContactPoint::turns_frame the normal and the first tangent. On a curve: coordinate on the patch less
+  /// foot_reference(); where segment-integrated: mean initial arc length less origin_of_arcs(). What is not stored is 0.
+  Feet<T, D> foot = Feet<T, D>::Constant(T(0));
   /// Motion of the foot relative to the master since the last increment, length. Slip is its tangential part.
-  Vec<T, D> foot_motion = foot;
+  Vec<T, D> foot_motion = Vec<T, D>::Constant(T(0));
   bool faces_master = true;  ///< false: the point is open
 };
 
@@ -56,15 +56,36 @@ T whole_area(const ContactPoint& point, const Slots<T>& slots) {
       point.segments, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
 }
 
-/// Turns normal, tangents and foot motion from the frame of the obstacle into axes of the plane.
-template <class U, class T>
-void turn_with(const Frame<T, 2>& frame, PlacedPoint<U, 2>& at) {
+/// Turns normal, tangents and foot motion from the frame of the obstacle into the axes.
+template <class U, class T, int D>
+void turn_with(const Frame<T, D>& frame, PlacedPoint<U, D>& at) {
   if (!frame.turn) return;
-  const auto turned = [&](const Vec<U, 2>& v) { return Vec<U, 2>(v + frame.turn->change(v)); };
-  const Vec<U, 2> normal = turned(Vec<U, 2>(at.geometry.normal[0], at.geometry.normal[1]));
-  at.geometry.normal << normal[0], normal[1];
-  at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
+  const auto turned = [&](const Vec<U, D>& v) { return Vec<U, D>(v + frame.turn->change(v)); };
+  at.geometry.normal = turned(at.geometry.normal);
   at.foot_motion = turned(at.foot_motion);
+  if constexpr (D == 2)
+    at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
+  else
+    for (int a = 0; a < 2; ++a) at.geometry.tangents.col(a) = turned(at.geometry.tangents.col(a));
+}
+
+/// Tangents of a point in space whose normal turns from increment to increment: those of the last one, turned from its
+/// normal n_0 to the present n the shortest way, which takes a vector e across n_0 to
+///
+///   e - (e . n) / (1 + n_0 . n) (n_0 + n)
+///
+/// So components of tractions and slips keep their directions on the surface. `last`: n_0 and the first tangent.
+template <class U, class T>
+auto carried_tangents(const T* last, const Vec<U, 3>& normal) {
+  Vec<U, 3> before, first;
+  for (int i = 0; i < 3; ++i) {
+    before[i] = U(last[i]);
+    first[i] = U(last[3 + i]);
+  }
+  first -= Vec<U, 3>(before + normal) * (dot(first, normal) / (U(1) + dot(before, normal)));
+  decltype(PointGeometry<U>::tangents) tangents(3, 2);
+  tangents << first, cross<U>(normal, first);
+  return tangents;
 }
 
 /// Geometry of a point against its obstacle.
@@ -85,7 +106,13 @@ PlacedPoint<U, D> on_obstacle(const Positions<U, T, Displacement>& positions, co
     at.foot[i] = w[i] - at.geometry.gap * at.geometry.normal[i];
     at.foot_motion[i] = earlier.foot ? U(at.foot[i] - U(earlier.foot[i])) : U(0);
   }
-  if constexpr (D == 2) turn_with<U, T>(frame, at);
+  if constexpr (D == 3)
+    if (point.turns_frame) {
+      if (earlier.foot) at.geometry.tangents = carried_tangents<U>(earlier.foot + D, Vec<U, 3>(at.geometry.normal));
+      at.foot.template segment<D>(D) = at.geometry.normal;
+      at.foot.template segment<D>(2 * D) = at.geometry.tangents.col(0);
+    }
+  turn_with<U, T>(frame, at);
   at.geometry.gap += U(offset_of(point, model, slots));
   at.geometry.area = U(earlier.start ? earlier.start->area : whole_area(point, slots));
   return at;
@@ -175,7 +202,7 @@ PlacedPoint<U, 2> off_curve(const Positions<U, T, Displacement>& positions, cons
   if (earlier.start) {
     normal << U(earlier.start->normal[0]), U(earlier.start->normal[1]);
   } else if (!point.area_facets.empty()) {
-    const Vec<T, 2> outward = slave_normal(point.area_facets, positions.slots.points);
+    const Vec<T, 2> outward = slave_normal<2>(point.area_facets, positions.slots.points);
     const T length = norm(outward);
     normal << U(-outward[0] / length), U(-outward[1] / length);
   }
@@ -252,7 +279,7 @@ PlacedPoint<U, 2> on_segments(const Positions<U, T, Displacement>& positions, co
       Depth<U>{depth.of_revolution, U(depth.thickness)}, rigid_foot, begin, !along_curve);
   PlacedPoint<U, 2> at;
   at.geometry = std::move(kinematics.geometry);
-  at.foot = kinematics.foot;
+  at.foot.template head<2>() = kinematics.foot;
   if (earlier.foot && !along_curve) {
     at.foot_motion = Vec<U, 2>(at.foot[0] - U(earlier.foot[0]), at.foot[1] - U(earlier.foot[1]));
   } else if (earlier.patch != Patch::none) {
@@ -301,8 +328,12 @@ template <class T>
 PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   using Master = ContactPoint::Master;
   PointGeometry<T> geometry;
-  if (point.master == Master::facet || point.master == Master::vertex) {
-    geometry = on_corners(model, point, slots);
+  const auto node = [&]<int D>(int n) -> Vec<T, D> { return slots.points.template block<D, 1>(0, n); };
+  if (point.master == Master::facet || point.master == Master::vertex || point.master == Master::faces) {
+    geometry = point.master != Master::faces
+                   ? on_corners(model, point, slots)
+                   : against_faces<T>(node.template operator()<3>(point.nodes[0]), point.faces, point.nodes,
+                                      [&](int n) { return node.template operator()<3>(n); });
     geometry.gap += offset_of(point, model, slots);
     geometry.area = whole_area(point, slots);
   } else {
@@ -314,10 +345,12 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
   }
   if (point.master == Master::segments && point.curve >= 0) geometry.area = whole_area(point, slots);
   if (!point.shares_normal) return geometry;
-  share_normal(geometry, slave_normal(point.area_facets, slots.points));
-  geometry.gap = T(0);
-  for (std::size_t n = 0; n < point.nodes.size(); ++n)
-    geometry.gap += geometry.weights[n] * dot(geometry.normal, point2(slots.points, point.nodes[n]));
+  with_dimension(model.dimension, [&]<int D>() {
+    share_normal<D, T>(geometry, slave_normal<D>(point.area_facets, slots.points));
+    geometry.gap = T(0);
+    for (std::size_t n = 0; n < point.nodes.size(); ++n)
+      geometry.gap += geometry.weights[n] * dot(geometry.normal, node.template operator()<D>(point.nodes[n]));
+  });
   geometry.gap += offset_of(point, model, slots);
   return geometry;
 }

@@ -64,8 +64,8 @@ struct MovedCurve {
     };
     Vec<double, 2> normal = Vec<double, 2>::Zero();
     for (std::size_t f = 0; f < point.facet_places.size(); ++f) {
-      const auto& [a, b] = point.area_facets[f];
-      const Vec<double, 2> along = node(b, point.facet_places[f].second) - node(a, point.facet_places[f].first);
+      const auto &facet = point.area_facets[f], &places = point.facet_places[f];
+      const Vec<double, 2> along = node(facet[1], places[1]) - node(facet[0], places[0]);
       normal += Vec<double, 2>(along[1], -along[0]);
     }
     return normal;

@@ -251,14 +251,16 @@ void place_contact_nodes(Model& model) {
     if (slides) nodes.insert(curve.nodes.begin(), curve.nodes.end());
   for (const auto& point : model.points)
     if (turns(point))
-      for (const auto& [a, b] : point.area_facets) nodes.insert({a, b});
+      for (const auto& facet : point.area_facets) nodes.insert(facet.begin(), facet.end());
   model.contact_nodes.assign(nodes.begin(), nodes.end());
   for (auto& point : model.points)
     for (int node : point.nodes) point.places.push_back(model.place_of(node));
   for (auto& point : model.points)
     if (turns(point))
-      for (const auto& [a, b] : point.area_facets)
-        point.facet_places.emplace_back(model.place_of(a), model.place_of(b));
+      for (const auto& facet : point.area_facets) {
+        auto& places = point.facet_places.emplace_back();
+        for (int node : facet) places.push_back(model.place_of(node));
+      }
   for (auto& curve : model.curves)
     for (int node : curve.nodes)
       if (slides) curve.places.push_back(model.place_of(node));
@@ -316,6 +318,7 @@ void place_feet(Model& model) {
   for (auto& point : model.points) {
     if (point.tangents == 0) continue;
     point.foot = model.foot_count;
+    point.turns_frame = model.dimension == 3 && !is_flat(model.scene.obstacles[point.obstacle].shape);
     model.foot_count += point.feet(model.dimension);
   }
 }

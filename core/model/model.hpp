@@ -11,6 +11,7 @@
 
 #include "core/contact/contact_point.hpp"
 #include "core/contact/curve.hpp"
+#include "core/contact/face.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/model/design_velocity.hpp"
 #include "core/model/scene.hpp"
@@ -57,9 +58,9 @@ struct MasterCurve {
 
 /// One slave node and its master. At small strain it does not change.
 struct ContactPoint {
-  /// Kind of master. facet, vertex: of a deformable side or a polyline; curve: patches of a MasterCurve; segments:
-  /// mortar segments.
-  enum class Master { obstacle, facet, vertex, segments, curve };
+  /// Kind of master. facet, vertex: of a deformable side or a polyline; faces: of a deformable side in space; curve:
+  /// patches of a MasterCurve; segments: mortar segments.
+  enum class Master { obstacle, facet, vertex, faces, segments, curve };
   Master master = Master::obstacle;
   int contact = 0;          ///< index in Scene::contacts
   int obstacle = -1;        ///< index in Scene::obstacles; -1: deformable master
@@ -68,14 +69,15 @@ struct ContactPoint {
   OwnVertex own = {};       ///< set if the slave side is its own master
   int foot = -1;            ///< offset of its foot in History::foot; -1: it has none
   std::vector<int> nodes;   ///< slave nodes, then master nodes. facet: its two; vertex: itself, then the far ends
-                            ///< of the facets whose end the projection is; curve: of the initial patch
+                            ///< of the facets whose end the projection is; faces: of all; curve: of the initial patch
   int slave_nodes = 1;      ///< number of slave nodes in `nodes`; more than 1 if segment-integrated
   std::vector<int> places;  ///< index of `nodes` in Model::contact_nodes
   /// facet: its two ends; vertex: itself between its neighbours, whose facets share the normal. Vertices of a polyline
   /// count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<int> corners;
-  std::vector<std::pair<int, int>> area_facets;  ///< facets of the slave side at the node, in the plane
-  std::vector<std::pair<int, int>>
+  std::vector<FacePlace> faces;               ///< faces: the place that it faces, on each face that has it
+  std::vector<std::vector<int>> area_facets;  ///< facets of the slave side at the node
+  std::vector<std::vector<int>>
       facet_places;  ///< the same as indices in Model::contact_nodes; for solid bodies along a curve
   std::vector<std::vector<int>> area_edges;  ///< sides of elements at the node, a share of which is its tributary area
   /// Segment-integrated contact: the segments that the multiplier of nodes[0] acts on. At finite strain: its whole
@@ -83,14 +85,15 @@ struct ContactPoint {
   std::vector<Segment> segments;
   bool area_of_bar = false;    ///< tributary area is the cross-section of the bar; else, without facets, 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
+  bool turns_frame = false;    ///< in space, with friction: its normal turns as it slides, and its tangents with it
   int slave_body = 0;
   double mesh_size = 0;   ///< mean length of the slave facets at the node, or of their edges; 0: none
   double tie_length = 0;  ///< length up to which an initial gap may be rounding of the coordinates
   int multiplier = 0;     ///< offset of its components in the multiplier vector
   int tangents = 0;       ///< 0 (frictionless) or D - 1
   int components() const { return 1 + tangents; }
-  /// Number of its coordinates in History::foot, in D dimensions. pre: it has a foot.
-  int feet(int D) const { return curve >= 0 ? 1 : D; }
+  /// Number of its entries in History::foot, in D dimensions. pre: it has a foot.
+  int feet(int D) const { return curve >= 0 ? 1 : turns_frame ? 3 * D : D; }
 };
 
 /// A prescribed dof. supports[support] prescribes it along an axis, or along its inclined direction if axis ==

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/contact/curve_search.hpp"
+#include "core/contact/face_search.hpp"
 #include "core/contact/facet_search.hpp"
 #include "core/contact/segments.hpp"
 #include "core/mesh/sides.hpp"
@@ -28,11 +29,12 @@ struct Facets {
 
 /// Leaves a slave node at a corner of its side the facets that face a master facet of normal `across`, any length:
 /// those within 60 degrees. If none is, it keeps all.
-void keep_facets_that_face(const Points<double>& points, const Vec<double, 2>& across, ContactPoint& point) {
+template <int D>
+void keep_facets_that_face(const Points<double>& points, const Vec<double, D>& across, ContactPoint& point) {
   constexpr double within = 0.5;
   auto facets = point.area_facets;
   std::erase_if(facets, [&](const auto& facet) {
-    const Vec<double, 2> outward = slave_normal({facet}, points);
+    const Vec<double, D> outward = slave_normal<D>({facet}, points);
     return outward.dot(across) > -within * outward.norm() * across.norm();
   });
   if (!facets.empty()) point.area_facets = std::move(facets);
@@ -48,14 +50,14 @@ bool find_corners(const Points<double>& points, const Facets& master, ContactPoi
     return Vec<double, 2>(tau[1], -tau[0]);
   };
   const auto opposes = [&](int f) {
-    return !point.shares_normal || slave_normal(point.area_facets, points).dot(normal(f)) < 0;
+    return !point.shares_normal || slave_normal<2>(point.area_facets, points).dot(normal(f)) < 0;
   };
   const bool deformable = point.obstacle < 0;
   const bool first = opposes(closest->facet), second = closest->second >= 0 && opposes(closest->second);
   if (!first && !second) return false;
   if (closest->second < 0 || first != second) {  // at a corner only one of its facets may oppose the slave side
     const int facet = first ? closest->facet : closest->second;
-    if (point.shares_normal) keep_facets_that_face(points, normal(facet), point);
+    if (point.shares_normal) keep_facets_that_face<2>(points, normal(facet), point);
     point.master = ContactPoint::Master::facet;
     point.corners = master.facets[facet];
     if (deformable) point.nodes.insert(point.nodes.end(), point.corners.begin(), point.corners.end());
@@ -71,6 +73,29 @@ bool find_corners(const Points<double>& points, const Facets& master, ContactPoi
     const Vec<double, 2> along = master.place(to) - v;
     if (std::abs((x - v).dot(along)) <= at_facet_end * along.squaredNorm()) point.nodes.push_back(to);
   }
+  return true;
+}
+
+/// Sets the faces that a slave node faces, of those that oppose its own side. False if it faces none.
+bool find_faces(const Points<double>& points, const FaceSearch& master, ContactPoint& point) {
+  const Vec<double, 3> x = points.col(point.nodes[0]);
+  point.faces = master.closest(x);
+  const auto normal = [&](const FacePlace& face) {
+    return slave_normal<3>({{face.nodes.begin(), face.nodes.begin() + face.corners}}, points);
+  };
+  if (point.shares_normal) {
+    const Vec<double, 3> own = slave_normal<3>(point.area_facets, points);
+    std::erase_if(point.faces, [&](const FacePlace& face) { return own.dot(normal(face)) >= 0; });
+  }
+  if (point.faces.empty()) return false;
+  Vec<double, 3> across = Vec<double, 3>::Zero();
+  for (const auto& face : point.faces) across += normal(face).normalized();
+  if (point.shares_normal) keep_facets_that_face<3>(points, across, point);
+  point.master = ContactPoint::Master::faces;
+  for (const auto& face : point.faces)
+    for (int k = 0; k < face.corners; ++k)
+      if (std::find(point.nodes.begin(), point.nodes.end(), face.nodes[k]) == point.nodes.end())
+        point.nodes.push_back(face.nodes[k]);
   return true;
 }
 
@@ -96,8 +121,8 @@ double local_size(const Points<double>& points, const ContactPoint& point) {
         size += (points.col(face[a]) - points.col(face[(a + 1) % face.size()])).norm();
     return edges > 0 ? size / edges : 0;
   }
-  for (const auto& [a, b] : point.area_facets)
-    size += (points.col(a) - points.col(b)).norm() / point.area_facets.size();
+  for (const auto& facet : point.area_facets)
+    size += (points.col(facet[0]) - points.col(facet[1])).norm() / static_cast<double>(point.area_facets.size());
   return size;
 }
 
@@ -128,7 +153,7 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
   point.nodes = {node};
   point.slave_body = pairing.slave.body;
   for (const auto& facet : pairing.slave.facets)
-    if (facet.size() == 2 && (facet[0] == node || facet[1] == node)) point.area_facets.emplace_back(facet[0], facet[1]);
+    if (std::find(facet.begin(), facet.end(), node) != facet.end()) point.area_facets.push_back(facet);
   for (const auto& edge : pairing.slave.edges)
     if (std::find(edge.begin(), edge.end(), node) != edge.end()) point.area_edges.push_back(edge);
   point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
@@ -141,6 +166,7 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
 }
 
 Facets facets_of_master(const Model& model, const Points<double>& points, const Pairing& pairing) {
+  if (pairing.obstacle < 0 && model.dimension == 3) return {points, {}};
   if (pairing.obstacle < 0) return {points, pairing.master.facets};
   const auto* polyline = std::get_if<Polyline>(&model.scene.obstacles[pairing.obstacle].shape);
   if (!polyline) return {points, {}};
@@ -159,15 +185,18 @@ bool has_no_area(const Model& model, const Points<double>& points, const SideSet
   return is_quadratic(model.bodies[side.body].mesh.shape) && model.is_on_axis(points, node);
 }
 
-/// Node-to-segment contact: each slave node against the closest point of its master.
+/// Node-to-segment contact, in space node-to-face: each slave node against the closest point of its master.
 void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairing) {
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
+  const bool has_faces = model.dimension == 3 && pairing.obstacle < 0;
+  const FaceSearch faces(points, has_faces ? pairing.master.facets : std::vector<std::vector<int>>());
   const Facets facets = facets_of_master(model, points, pairing);
   for (int node : pairing.slave.nodes) {
     if (has_no_area(model, points, pairing.slave, node)) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
     point.shares_normal = pairing.obstacle < 0 && is_continuum(shape) && !point.area_facets.empty();
-    if (find_master(points, model, facets, point)) add_point(model, std::move(point));
+    if (has_faces ? find_faces(points, faces, point) : find_master(points, model, facets, point))
+      add_point(model, std::move(point));
   }
 }
 
@@ -182,7 +211,8 @@ void pair_along_curve(Model& model, const Points<double>& points, const Pairing&
     if (has_no_area(model, points, pairing.slave, node)) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
     const bool has_side = is_continuum(shape) && !point.area_facets.empty();
-    const Vec<double, 2> outward = has_side ? slave_normal(point.area_facets, points) : Vec<double, 2>::Zero().eval();
+    const Vec<double, 2> outward =
+        has_side ? slave_normal<2>(point.area_facets, points) : Vec<double, 2>::Zero().eval();
     point.master = ContactPoint::Master::curve;
     point.curve = static_cast<int>(model.curves.size());
     const Vec<double, 2> x = points.col(node).head<2>();
@@ -295,7 +325,8 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   if (pairing.obstacle < 0) {
     pairing.master = sides.master;  // of a side that touches itself the axis tells how thick it is
     if (!contact.is_of_itself()) pairing.master = surface_of(model, points, pairing.master);
-    if (model.dimension == 3) throw ModelError("a deformable master needs a 2D space", where);
+    if (model.dimension == 3 && model.scene.finite_strain)
+      throw ModelError("a deformable master in space needs small strain", where);
     if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
   } else if (model.dimension == 3 && !is_in_space(model.scene.obstacles[pairing.obstacle].shape)) {
     throw ModelError("this surface is not made for space", "/obstacles/" + contact.master);

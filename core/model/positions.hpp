@@ -21,25 +21,22 @@ Vec<T, 2> start_of(const Model& model, int obstacle, const Slots<T>& slots, int 
 template <class T, int D>
 struct Frame {
   Vec<T, D> shift = Vec<T, D>::Constant(T(0)), center = Vec<T, D>::Constant(T(0));
-  std::optional<Turn<T>> turn = {};  ///< 2D only; none: the obstacle does not rotate
+  std::optional<Turn<T>> turn = {};  ///< none: the obstacle does not rotate
 
   /// Displacement seen from the obstacle. `X`: initial position; `u`: displacement, in a scalar built on T.
   template <class U>
   Vec<U, D> seen(const Vec<T, D>& X, const Vec<U, D>& u) const {
     Vec<U, D> w;
     for (int i = 0; i < D; ++i) w[i] = u[i] - U(shift[i]);
-    if constexpr (D == 2)
-      if (turn) {
-        const auto arm = [&](int i) { return U(X[i] - center[i]) + w[i]; };
-        w += turn->back().change(Vec<U, 2>(arm(0), arm(1)));
-      }
-    return w;
+    if (!turn) return w;
+    Vec<U, D> arm;
+    for (int i = 0; i < D; ++i) arm[i] = U(X[i] - center[i]) + w[i];
+    return w + turn->back().change(arm);
   }
   /// Displacement of the place X of the obstacle.
   Vec<T, D> displacement(const Vec<T, D>& X) const {
     Vec<T, D> u = shift;
-    if constexpr (D == 2)
-      if (turn) u += turn->change(Vec<T, 2>(X - center));
+    if (turn) u += turn->change(Vec<T, D>(X - center));
     return u;
   }
 };
@@ -51,7 +48,7 @@ Frame<T, D> frame_of_obstacle(const Obstacle& obstacle, double time, const Numbe
   for (const auto& [axis, table] : obstacle.move) frame.shift[axis - 'x'] = evaluate(table, time, numbers);
   if (!obstacle.rotate) return frame;
   for (int i = 0; i < D; ++i) frame.center[i] = numbers(obstacle.rotate->center[i]);
-  frame.turn = Turn<T>::from_degrees(evaluate(obstacle.rotate->angle, time, numbers));
+  frame.turn = Turn<T>::about(*obstacle.rotate, evaluate(obstacle.rotate->angle, time, numbers), numbers);
   return frame;
 }
 

@@ -41,37 +41,46 @@ Vector<T> displacement_per_degree(const Rotation& rotation, const Place& x, cons
   return across_axis(rotation, arm, numbers);
 }
 
-/// A rotation by a finite angle; change() is of one in the plane.
+/// A rotation by a finite angle. What x changes by is, with a the axis, sin angle a x x + (1 - cos angle) a x (a x x).
 template <class T>
 struct Turn {
   T sine, cosine_less_one;  ///< the latter without cancellation at small angles
+  Vec<T, 3> axis{T(0), T(0), T(1)};
 
-  /// `degrees`: the angle, positive counter-clockwise.
-  static Turn from_degrees(const T& degrees) {
+  /// `degrees`: the angle, positive counter-clockwise seen against the axis.
+  static Turn about(const Rotation& rotation, const T& degrees, const Numbers<T>& numbers) {
     using std::sin;
     const T angle = degrees * T(std::acos(-1.0) / 180), half = sin(angle / T(2));
-    return {sin(angle), T(-2) * half * half};
+    Turn turn{sin(angle), T(-2) * half * half};
+    if (rotation.axis.empty()) return turn;
+    for (int i = 0; i < 3; ++i) turn.axis[i] = numbers(rotation.axis[i]);
+    const T length = norm(turn.axis);
+    for (int i = 0; i < 3; ++i) turn.axis[i] /= length;
+    return turn;
   }
-  Turn back() const { return {-sine, cosine_less_one}; }
+  Turn back() const { return {-sine, cosine_less_one, axis}; }
   /// What a vector changes by.
   template <class U>
   Vec<U, 2> change(const Vec<U, 2>& x) const {
     const U s(sine), c(cosine_less_one);
     return {c * x[0] - s * x[1], s * x[0] + c * x[1]};
   }
+  template <class U>
+  Vec<U, 3> change(const Vec<U, 3>& x) const {
+    const Vec<U, 3> a{U(axis[0]), U(axis[1]), U(axis[2])}, once = cross<U>(a, x), twice = cross<U>(a, once);
+    return U(sine) * once - U(cosine_less_one) * twice;
+  }
 };
 
-/// Displacement of the place x when it is rotated by an angle in degrees: by a finite one exactly. In space, with a the
-/// axis and r the arm, sin angle a x r + (1 - cos angle) a x (a x r).
+/// Displacement of the place x when it is rotated by an angle in degrees: by a finite one exactly.
 template <class T, class Place>
 Vector<T> rotated(const Rotation& rotation, const Place& x, const T& degrees, bool finite, const Numbers<T>& numbers) {
   if (!finite) return degrees * displacement_per_degree<T>(rotation, x, numbers);
-  const auto turn = Turn<T>::from_degrees(degrees);
+  const auto turn = Turn<T>::about(rotation, degrees, numbers);
   Vector<T> arm(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) arm[i] = x[i] - numbers(rotation.center[i]);
-  if (arm.size() == 2) return turn.change(Vec<T, 2>(arm[0], arm[1]));
-  const Vector<T> once = across_axis(rotation, arm, numbers), twice = across_axis(rotation, once, numbers);
-  return turn.sine * once - turn.cosine_less_one * twice;
+  if (arm.size() == 2) return turn.change(Vec<T, 2>(arm));
+  return turn.change(Vec<T, 3>(arm));
 }
 
 /// Unit vector that a constraint prescribes the displacement along. pre: it has a support.

@@ -109,11 +109,8 @@ void for_each_face_point(const Points<T>& points, const std::vector<int>& face, 
         along[i] += points(i, face[a]) * T(point.along[a]);
         across[i] += points(i, face[a]) * T(point.across[a]);
       }
-    AreaVector<T> outward(3);
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      outward[i] = (along[j] * across[k] - along[k] * across[j]) * T(point.weight);
-    }
+    AreaVector<T> outward = cross(along, across);
+    for (int i = 0; i < 3; ++i) outward[i] *= T(point.weight);
     const T area = norm(outward);
     f(point.value, outward, area);
   }

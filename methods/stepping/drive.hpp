@@ -18,15 +18,11 @@ Vector<double> driven_motion(const Model& model, const Slots<T>& slots, double t
   for (const auto& point : model.points) {
     if (point.obstacle < 0) continue;
     const auto& obstacle = model.scene.obstacles[point.obstacle];
-    const auto number = [&](const auto& x) { return value(slots.numbers(x)); };
     Vector<double> moved = Vector<double>::Zero(model.dimension);
     for (const auto& [axis, table] : obstacle.move) moved[axis - 'x'] = value(evaluate(table, time, slots.numbers));
-    if (obstacle.rotate) {
-      const auto turn = Turn<double>::from_degrees(value(evaluate(obstacle.rotate->angle, time, slots.numbers)));
-      const Vec<double, 2> center(number(obstacle.rotate->center[0]), number(obstacle.rotate->center[1]));
-      const Vec<double, 2> arm = values(slots.points.col(point.nodes[0]).template head<2>()) - center;
-      moved.head<2>() += turn.change(arm).matrix();
-    }
+    if (const auto& rotate = obstacle.rotate)
+      moved += values(rotated<T>(*rotate, slots.points.col(point.nodes[0]),
+                                 evaluate(rotate->angle, time, slots.numbers), true, slots.numbers));
     motion.insert(motion.end(), moved.begin(), moved.end());
   }
   return Eigen::Map<Vector<double>>(motion.data(), static_cast<Eigen::Index>(motion.size()));

@@ -70,8 +70,8 @@ inline PrescribedFacets prescribed_facets(const Model& model, int contact) {
     if (std::find(to.begin(), to.end(), std::array{a, b}) == to.end()) to.push_back({a, b});
   };
   for (const auto& point : model.points)
-    for (const auto& [a, b] : point.area_facets)
-      if (point.contact == contact && point.obstacle < 0) take(facets.slave, a, b);
+    for (const auto& facet : point.area_facets)
+      if (point.contact == contact && point.obstacle < 0) take(facets.slave, facet[0], facet[1]);
   for (const auto& curve : model.curves)
     if (curve.contact == contact && curve.obstacle < 0)
       for (const auto& patch : curve.patches)

@@ -50,7 +50,7 @@ const char* const scene = R"json({
   "$schema": {"description": "for editors: where the schema of this file is; not read", "type": "string",
     "examples": ["scene.schema.json"]},
   "title": {"description": "shown in reports", "type": "string", "examples": ["Block on a rough floor"]},
-  "space": {"description": "solid: 3D, against obstacles",
+  "space": {"description": "solid: 3D",
     "enum": ["plane_strain", "plane_stress", "axisymmetric", "solid"], "default": "plane_strain"},
   "strain": {
     "description": "small: linear strain, and the contact geometry of the start; finite: everything is where it is now",

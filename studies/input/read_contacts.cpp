@@ -29,11 +29,7 @@ void read_obstacle(const std::string& name, const JsonNode& node, SceneReading& 
   Obstacle obstacle;
   obstacle.name = name;
   if (const auto move = node.find("move")) obstacle.move = reading.move(*move);
-  if (const auto rotate = node.find("rotate")) {
-    obstacle.rotate = reading.rotation(*rotate);
-    if (reading.dimension() == 3 && reading.scene.finite_strain)
-      rotate->error_at_key("an obstacle rotates in the plane, or at small strain; rotate the bodies by their supports");
-  }
+  if (const auto rotate = node.find("rotate")) obstacle.rotate = reading.rotation(*rotate);
   const auto kind = std::find_if(kinds.begin(), kinds.end(), [&key = key](const auto& k) { return key == k.key; });
   if (reading.dimension() == 3 && !kind->is_in_space) {
     shape.error_at_key("a " + key + " needs a plane space; allowed in the space solid: " + listed(in_space));
@@ -43,16 +39,6 @@ void read_obstacle(const std::string& name, const JsonNode& node, SceneReading& 
     if (auto surface = kind->read(shape, reading)) obstacle.shape = *std::move(surface);
   }
   reading.scene.obstacles.push_back(std::move(obstacle));
-}
-
-/// Whether the master is a round obstacle of space, on which points slide at finite strain: the directions of slip turn
-/// with its normal, which stored tractions do not follow yet.
-bool slides_on_round(const Contact& contact, const SceneReading& reading) {
-  const auto& obstacles = reading.scene.obstacles;
-  return reading.scene.finite_strain && reading.dimension() == 3 &&
-         std::any_of(obstacles.begin(), obstacles.end(), [&](const Obstacle& obstacle) {
-           return obstacle.name == contact.master && !is_flat(obstacle.shape);
-         });
 }
 
 /// The side of a contact; the anchor of a spring is a place, nothing that could touch.
@@ -67,9 +53,10 @@ std::optional<NamedSide> touching_side(const JsonNode& node, SceneReading& readi
 
 /// `of_itself`: it is the slave too.
 void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, bool of_itself, SceneReading& reading) {
-  if (reading.dimension() == 3) {
-    node.error("is " + shown(node.value()) +
-               "; in the space solid the master must be an obstacle: " + listed(reading.obstacle_names));
+  if (reading.dimension() == 3 && (reading.scene.finite_strain || of_itself)) {
+    node.error("is " + shown(node.value()) + "; in the space solid " +
+               (of_itself ? "no side touches itself" : "the master must be an obstacle at finite strain") + ": " +
+               listed(reading.obstacle_names));
     return;
   }
   const auto master = touching_side(node, reading);
@@ -91,6 +78,10 @@ void read_surface(const JsonNode& node, Contact& contact, const SceneReading& re
   const auto& obstacles = reading.scene.obstacles;
   if (std::any_of(obstacles.begin(), obstacles.end(), is_master)) {
     node.error("smooths facets, and the master " + in_quotes(contact.master) + " has none; allowed: \"faceted\"");
+    return;
+  }
+  if (reading.dimension() == 3) {
+    node.error(R"(smooths edges of the plane; allowed in the space solid: "faceted")");
     return;
   }
   contact.smoothing = Smoothing::catmull_rom;
@@ -235,13 +226,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
     }
     contact.master = text.value_or("");
   }
-  if (const auto friction = node.find("friction")) {
-    contact.friction = read_friction(*friction, reading);
-    if (slides_on_round(contact, reading))
-      friction->error_at_key(
-          "friction on a round obstacle of space needs small strain in this version; at finite strain leave it out, or "
-          "take a plane");
-  }
+  if (const auto friction = node.find("friction")) contact.friction = read_friction(*friction, reading);
   contact.offset = reading.optional(node, "offset", 0, any_number);
   if (const auto surface = node.find("surface")) read_surface(*surface, contact, reading);
   const bool is_solid =

@@ -55,6 +55,17 @@ Scene under_a_drum(bool finite) {
   return s;
 }
 
+/// The drum is rough, and turns: it pulls the block along.
+Scene under_a_rough_drum() {
+  Scene s = under_a_drum(true);
+  s.contacts.back().friction = scenes::parameter(s, "rough", 0.4);
+  s.obstacles.back().rotate =
+      Rotation{{0.9, 2.5}, {}, scenes::table({{1, 0.0}, {2, scenes::parameter(s, "turn", 2.0)}})};
+  s.responses.push_back(scenes::response("drawn", Kind::contact_force, "roof", "x"));
+  s.responses.push_back(scenes::response("heat", Kind::dissipation, "roof"));
+  return s;
+}
+
 const J2Plastic metal{1000.0, 0.3, 12.0, 50.0};
 
 std::vector<Scene> plane_scenes() {
@@ -69,7 +80,10 @@ std::vector<Scene> plane_scenes() {
                          drawn_block(rubber, true, "Q4_mean_dilatation"),
                          drawn_block(metal, true),
                          under_a_drum(false),
-                         under_a_drum(true)};
+                         under_a_drum(true),
+                         under_a_rough_drum(),
+                         scenes::two_boxes(5, 8),
+                         scenes::two_disks(6, false)};
   for (auto& scene : all) {  // what the plane alone can be asked
     std::erase_if(scene.responses, [](const Response& response) {
       return response.component == Response::Component::moment || response.kind == Kind::contact_half_width;
@@ -90,6 +104,8 @@ TEST(Extruded, ScenesOfPlaneStrainHaveTheirAnswersAndDerivativesInSpace) {
       ASSERT_TRUE(is_converged(in_space.trajectory.status)) << in_space.trajectory.message;
       const auto &expected = in_plane.trajectory.increments, &found = in_space.trajectory.increments;
       ASSERT_EQ(found.size(), expected.size());
+      for (const auto* one : {&in_plane, &in_space})
+        ASSERT_EQ(one->gradients.of_responses.size(), expected.size()) << one->gradients.message;
       const auto responses = [](const scenes::Solved& s, std::size_t n) {
         const auto& increment = s.trajectory.increments[n];
         return evaluate_responses(s.model, s.slots, increment.state, increment.time);
@@ -152,6 +168,75 @@ Scene twisted_block(const Material& material, bool finite, const std::string& el
                  scenes::response("slip", Kind::slip, "sole", "x"),
                  scenes::response("energy", Kind::strain_energy, "")};
   return s;
+}
+
+/// The block in a bowl that turns about a skew axis while the block is twisted in it.
+Scene block_in_a_bowl(const Material& material, bool finite) {
+  Scene s = twisted_block(material, finite);
+  const Number radius = scenes::parameter(s, "radius", 5.0), turn = scenes::parameter(s, "turn", 1.5);
+  s.obstacles[0].shape = Sphere{{0.6, 0.4, 4.95}, radius, true};
+  s.obstacles[0].rotate = Rotation{{0.6, 0.4, 4.0}, {0.2, 0.1, 1.0}, scenes::table({{1, 0.0}, {2, turn}})};
+  return s;
+}
+
+/// Two blocks whose meshes do not match: the upper one is pressed, drawn along two directions and twisted.
+Scene block_on_block(const std::string& element, bool matching = false) {
+  Scene s;
+  s.space = Space::solid;
+  s.legs = {{1, 2}, {2, 3}};
+  const Number mu = scenes::parameter(s, "mu", 0.3), E = scenes::parameter(s, "E", 1000.0),
+               down = scenes::parameter(s, "down", -0.02), twist = scenes::parameter(s, "twist", 3.0),
+               depth = scenes::parameter(s, "depth", 0.83), edge = scenes::parameter(s, "edge", 0.21);
+  BoxMesh upper, lower;
+  upper.min = {edge, 0.17, 1.0};
+  upper.max = {1.0, depth, 1.6};
+  upper.cells = {3, 2, 2};
+  lower.min = {0.0, 0.0, 0.0};
+  lower.max = {1.2, 1.0, 1.0};
+  lower.cells = {3, 4, 2};
+  if (matching) {
+    lower.min = {edge, 0.17, 0.4};
+    lower.max = {1.0, depth, 1.0};
+    lower.cells = upper.cells;
+  }
+  s.bodies = {{"upper", upper, LinearElastic{E, 0.3}, element, 1.0},
+              {"lower", lower, LinearElastic{1500.0, 0.2}, element, 1.0}};
+  s.contacts = {scenes::contact("touch", "upper.bottom", "lower.top")};
+  s.contacts[0].friction = mu;
+  const Table still = scenes::table({{0, 0.0}});
+  Support top = scenes::support("upper.top", {{'x', scenes::table({{1, 0.0}, {2, 0.01}})},
+                                              {'y', scenes::table({{1, 0.0}, {2, -0.006}})},
+                                              {'z', scenes::table({{0, 0.0}, {1, down}})}});
+  top.rotate = Rotation{{0.6, 0.4, 1.6}, {0.0, 0.0, 1.0}, scenes::table({{1, 0.0}, {2, twist}})};
+  s.supports = {scenes::support("lower.bottom", {{'x', still}, {'y', still}, {'z', still}}), top};
+  s.responses = {scenes::response("press", Kind::contact_force, "touch", "normal"),
+                 scenes::response("x", Kind::contact_force, "touch", "x"),
+                 scenes::response("y", Kind::contact_force, "touch", "y"),
+                 scenes::response("pull", Kind::reaction, "upper.top", "y"),
+                 scenes::response("heat", Kind::dissipation, "touch"),
+                 scenes::response("peak", Kind::contact_pressure, "touch", "", Response::Take::max),
+                 scenes::response("energy", Kind::strain_energy, "")};
+  return s;
+}
+
+/// Nodes over nodes: pressed evenly, both blocks have one stress, since each node bears its own share of the area.
+TEST(SolidBodies, OfMatchingMeshesPassThePatchTest) {
+  for (const char* element : {"H8", "T4"}) {
+    Scene s = block_on_block(element, true);
+    for (auto& body : s.bodies) body.material = LinearElastic{1000.0, 0.0};
+    s.contacts[0].friction.reset();
+    const Table still = scenes::table({{0, 0.0}});
+    s.supports = {
+        scenes::support("lower.bottom", {{'x', still}, {'y', still}, {'z', still}}),
+        scenes::support("upper.top", {{'x', still}, {'y', still}, {'z', scenes::table({{0, 0.0}, {2, -0.012}})}})};
+    for (const Method& method : {Method(UzawaAL{}), Method(MonolithicAL{})}) {
+      const auto run = scenes::run(s, method);
+      ASSERT_TRUE(is_converged(run.trajectory.status)) << run.trajectory.message;
+      const auto& contact = run.trajectory.increments.back().state.contact;
+      for (std::size_t p = 0; p < run.model.points.size(); ++p)  // E u / h = 1000 x .012 / 1.2; Uzawa ends at 1e-7
+        EXPECT_NEAR(contact.traction[run.model.points[p].multiplier], -10, 1e-5) << element << name_of(method);
+    }
+  }
 }
 
 /// The side of a box that another becomes where x becomes y, y becomes z and z becomes x.
@@ -238,10 +323,13 @@ TEST(SolidBodies, HaveTheDerivativesOfTheOracleInBothModes) {
     scenes::expect_derivatives_in_both_modes(twisted_block(LinearElastic{1000.0, 0.3}, false), method);
     scenes::expect_derivatives_in_both_modes(twisted_block(LinearElastic{1000.0, 0.3}, false, "T4"), method);
     scenes::expect_derivatives_in_both_modes(twisted_block(rubber, true), method);
+    scenes::expect_derivatives_in_both_modes(block_on_block("H8"), method);
+    scenes::expect_derivatives_in_both_modes(block_in_a_bowl(rubber, true), method);
   }
   const MonolithicAL monolithic;
   scenes::expect_derivatives_in_both_modes(twisted_block(rubber, true, "H8_mean_dilatation"), monolithic);
   scenes::expect_derivatives_in_both_modes(twisted_block(rubber, true, "T4"), monolithic);
+  scenes::expect_derivatives_in_both_modes(block_on_block("T4"), monolithic);
   scenes::expect_derivatives_in_both_modes(twisted_block(metal, false), monolithic);
   scenes::expect_derivatives_in_both_modes(twisted_block(metal, true), monolithic);
 }

@@ -130,7 +130,7 @@ TEST(SharedNormal, IsTheBisectorForASlaveNormalOfAnyLength) {
   const double turn = 0.4;
   for (double length : {1e-3, 1.0, 1e3}) {
     auto g = against_facet<double>(Point(0, 0.5), Point(1, 0), Point(-1, 0));
-    share_normal<double>(g, length * Point(std::sin(turn), -std::cos(turn)));  // reversed: turned from (0, 1) by `turn`
+    share_normal<2, double>(g, length * Point(std::sin(turn), -std::cos(turn)));  // reversed: turned from (0, 1) by `turn`
     expect_vector(g, -std::sin(turn / 2), std::cos(turn / 2));
     EXPECT_NEAR(g.weights.sum(), 0, rounding);
   }
@@ -139,7 +139,7 @@ TEST(SharedNormal, IsTheBisectorForASlaveNormalOfAnyLength) {
 TEST(SharedNormal, ChangesNothingBetweenParallelSurfaces) {
   const auto before = against_facet<double>(Point(0.2, 0.5), Point(1, 0), Point(-1, 0.3));
   auto g = before;
-  share_normal<double>(g, -3 * Point(before.normal));
+  share_normal<2, double>(g, -3 * Point(before.normal));
   expect_vector(g, before.normal[0], before.normal[1]);
 }
 
@@ -147,8 +147,8 @@ TEST(SharedNormal, TreatsBothBodiesAlike) {
   const Point up(0.1, 0.995), down(-0.3, -0.954);
   PointGeometry<double> one = against_facet<double>(Point(0, 0), Point(up[1], -up[0]), Point(-up[1], up[0]));
   PointGeometry<double> other = against_facet<double>(Point(0, 0), Point(down[1], -down[0]), Point(-down[1], down[0]));
-  share_normal<double>(one, down);
-  share_normal<double>(other, up);
+  share_normal<2, double>(one, down);
+  share_normal<2, double>(other, up);
   expect_vector(one, -other.normal[0], -other.normal[1]);
 }
 
@@ -224,7 +224,7 @@ TEST(Derivatives, OfEverySurfaceAreThoseOfTheComplexStep) {
       [](const auto& x) {
         using T = typename std::decay_t<decltype(x)>::Scalar;
         auto g = against_facet<T>(two(x, 0), two(x, 2), two(x, 4));
-        share_normal<T>(g, two(x, 6));
+        share_normal<2, T>(g, two(x, 6));
         return flat(g);
       },
       8, "shared normal");

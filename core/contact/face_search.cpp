@@ -1,0 +1,95 @@
+#include "core/contact/face_search.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace stickslip {
+namespace {
+
+/// Share of a face's size by which a projection may lie past a border of the surface: coordinates of a mesh file are
+/// rounded, and that must not decide whether a node at the border of its master faces it.
+constexpr double past_border = 1e-6;
+
+/// Whether place a precedes place b at the same distance.
+bool precedes(const NearestPlace& a, const NearestPlace& b) {
+  const bool a_inside = a.place.part == FacePart::inside, b_inside = b.place.part == FacePart::inside;
+  if (a_inside != b_inside) return a_inside;
+  return std::lexicographical_compare(a.position.begin(), a.position.end(), b.position.begin(), b.position.end());
+}
+
+}  // namespace
+
+FaceSearch::FaceSearch(const Points<double>& points, const std::vector<std::vector<int>>& faces) : points_(points) {
+  std::map<std::pair<int, int>, int> count;  // of faces at an edge
+  for (const auto& nodes : faces) {
+    FacePlace face;
+    face.corners = static_cast<int>(nodes.size());
+    std::copy(nodes.begin(), nodes.end(), face.nodes.begin());
+    faces_.push_back(face);
+    for (std::size_t k = 0; k < nodes.size(); ++k) ++count[std::minmax(nodes[k], nodes[(k + 1) % nodes.size()])];
+  }
+  std::vector<int> numbers;
+  for (const auto& face : faces_) {
+    auto& border = border_.emplace_back();
+    for (int k = 0; k < face.corners; ++k)
+      border[k] = count[std::minmax(face.nodes[k], face.nodes[(k + 1) % face.corners])] == 1;
+    const auto corner = corners_of(face);
+    bool is_finite = true;
+    for (int k = 0; k < face.corners; ++k) {
+      is_finite &= corner[k].allFinite();
+      band_ = std::max(band_, at_face_edge * (corner[(k + 1) % face.corners] - corner[k]).norm());
+    }
+    if (is_finite) numbers.push_back(static_cast<int>(border_.size()) - 1);
+  }
+  boxes_ = BoxTree<3>(std::move(numbers), [this](int f) {
+    const auto corner = corners_of(faces_[f]);
+    Bounds<3> bounds{corner[0], corner[0]};
+    for (int k = 1; k < faces_[f].corners; ++k) bounds.take_in({corner[k], corner[k]});
+    return bounds;
+  });
+}
+
+std::array<Vec<double, 3>, 4> FaceSearch::corners_of(const FacePlace& face) const {
+  std::array<Vec<double, 3>, 4> corner;
+  for (int k = 0; k < 4; ++k) corner[k] = points_.col(face.nodes[std::min(k, face.corners - 1)]);
+  return corner;
+}
+
+std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x) const {
+  std::vector<Near> near;  // as near as the nearest so far, and ties
+  double least = std::numeric_limits<double>::infinity();
+  const auto skips = [&](const Bounds<3>& box) { return box.distance(x) > least + band_; };
+  boxes_.visit(x, skips, [&](int f) {
+    near.push_back({nearest_of_face(faces_[f], corners_of(faces_[f]), x), f});
+    least = std::min(least, near.back().distance);
+  });
+  std::erase_if(near, [&](const Near& at) { return at.distance > least + band_; });
+  if (near.empty()) return {};
+  const NearestPlace best = *std::min_element(near.begin(), near.end(), precedes);
+  std::erase_if(near, [&](const Near& at) { return (at.position - best.position).norm() > 2 * band_; });
+  if (is_past_border(near, x)) return {};
+  std::vector<FacePlace> places;
+  for (const auto& at : near) places.push_back(at.place);
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.nodes < b.nodes; });
+  return places;
+}
+
+bool FaceSearch::is_past_border(const std::vector<Near>& places, const Vec<double, 3>& x) const {
+  for (const auto& near : places) {
+    const auto corner = corners_of(near.place);
+    for (int k = 0; k < near.place.corners; ++k) {
+      if (!border_[near.face][k]) continue;
+      const Vec<double, 3> along = (corner[(k + 1) % near.place.corners] - corner[k]).normalized();
+      const Vec<double, 3> from = near.position - corner[k];
+      if ((from - from.dot(along) * along).norm() > band_) continue;  // (not on this edge)
+      const auto at =
+          face_position(corner, face_weights<double>(near.place.corners, near.place.at[0], near.place.at[1]));
+      const Vec<double, 3> outward = cross<double>(along, cross(at.along_s, at.along_t)).normalized();
+      if ((x - near.position).dot(outward) > past_border * near.size) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace stickslip

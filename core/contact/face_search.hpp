@@ -1,0 +1,36 @@
+/// Search for what a point faces of a surface in space. The faces may come in any order.
+#pragma once
+
+#include <vector>
+
+#include "core/contact/box_tree.hpp"
+#include "core/contact/face.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace stickslip {
+
+/// The faces of one side at given nodal positions.
+class FaceSearch {
+ public:
+  /// `points`: nodal positions, 3 x nodes; `faces`: three or four nodes each, counter-clockwise seen from outside.
+  FaceSearch(const Points<double>& points, const std::vector<std::vector<int>>& faces);
+
+  /// The closest place of the surface to x, on each face that has it; none if x projects past a border of the surface.
+  /// Of places that are equally close it is one inside of a face, then that of least x, y, z: geometry alone decides.
+  std::vector<FacePlace> closest(const Vec<double, 3>& x) const;
+
+ private:
+  struct Near : NearestPlace {
+    int face;
+  };
+  bool is_past_border(const std::vector<Near>& places, const Vec<double, 3>& x) const;
+  std::array<Vec<double, 3>, 4> corners_of(const FacePlace& face) const;
+
+  Points<double> points_;
+  std::vector<FacePlace> faces_;
+  std::vector<std::array<char, 4>> border_;  ///< per face and edge: whether no other face has it
+  BoxTree<3> boxes_;
+  double band_ = 0;  ///< length above the rounding of a distance
+};
+
+}  // namespace stickslip
