@@ -78,8 +78,16 @@ void print_summary(const CaseResult& result) {
         solved.empty() ? "; no step before it converged, so there are no responses" : "");
   if (solved.empty()) return;
   const auto& last = solved.back();
+  const bool is_inaccurate = last.increment->status == Status::inaccurate;
+  if (is_inaccurate)
+    say(std::cout,
+        "\nINACCURATE at t = {:g}: the error {:.1e} is larger than method and rounding explain; do not use these "
+        "values\n",
+        last.increment->time, last.kkt.largest());
   say(std::cout, "\nresponses at t = {:g}{}, and their derivatives\n", last.increment->time,
-      has_ended(result) ? "" : ", the last step that converged");
+      is_inaccurate       ? ", inaccurate"
+      : has_ended(result) ? ""
+                          : ", the last step that converged");
   constexpr std::size_t below_value = 4;  // indent of a row that goes on
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
     std::vector<std::string> row{fmt::format("  {:<20} {: .10e}", scene.responses[i].name, last.responses[i])};

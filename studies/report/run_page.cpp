@@ -125,10 +125,21 @@ std::string slope_in_words(double slope, double value, double largest_share) {
   return number(slope, std::abs(slope) <= rounding * largest_share * std::abs(value) ? 2 : 8);
 }
 
-/// Of a run without a solution at its end: where it failed, and what is shown in its place; else empty.
+/// Whether the last step has a solution, be it an inaccurate one.
+bool has_values_at_end(const Cell& cell) {
+  const json& steps = array_at(cell.record, "steps");
+  return steps.empty() || steps.back().contains("responses");
+}
+
+/// Of a run without a solution at its end: where it failed, and what is shown in its place; of an inaccurate one that
+/// its values are no result; else empty.
 std::string banner(const Cell& cell) {
   const json& steps = array_at(cell.record, "steps");
-  if (steps.empty() || steps.back().contains("responses")) return "";
+  if (has_values_at_end(cell))
+    return cell.status != "inaccurate"
+               ? ""
+               : "<p class=\"banner\"><strong>Inaccurate.</strong> Errors are larger than method "
+                 "and rounding explain. Do not use these values.</p>\n";
   const std::string shown = steps.size() > 1 ? fmt::format("What is shown is the last step that converged, t = {}.",
                                                            number(number_at(steps[steps.size() - 2], "time"), 6))
                                              : "No step before it converged: what is shown is the start.";
@@ -207,7 +218,8 @@ std::string first_of_run(const Study& run, Figures& figures) {
     out += "<p class=\"note\">The bodies and tractions were not recorded; <code>run --report</code> does.</p>\n";
   constexpr std::size_t most_columns = 6;  // that half a page has room for
   const Table values = last_values(run.cells.front());
-  const std::string when = banner(run.cells.front()).empty() ? "at the last step" : "at the last step that converged";
+  const std::string when =
+      has_values_at_end(run.cells.front()) ? "at the last step" : "at the last step that converged";
   const std::string table = values.rows.empty() ? "" : to_html(values, "Responses " + when + ", and their derivatives");
   const bool narrow = values.header.size() <= most_columns;
   const std::string words = "<div>" + out + (narrow ? table : "") + "</div>\n", below = narrow ? "" : table;

@@ -256,6 +256,15 @@ TEST_F(ReportOfARun, WithoutASolutionShowsTheLastStepThatHasOneUnderABanner) {
                     HasSubstr("id=\"overview\"")));
 }
 
+TEST_F(ReportOfARun, ThatIsInaccurateSaysNotToUseItsValues) {
+  const auto document = cases::load(scene_files / "stop.json");
+  const std::string file = scene_files / "stop.json";
+  const std::string stiff = page_of(cases::run(document, {{"penalty", {{"stiffness", 1e16}}}}, file));
+  EXPECT_THAT(stiff, AllOf(HasSubstr("<p class=\"banner\"><strong>Inaccurate.</strong>"),
+                           HasSubstr("Responses at the last step, and")));
+  EXPECT_THAT(page_of(cases::run(document, {{"penalty", {{"stiffness", 1e3}}}}, file)), Not(HasSubstr("banner\"")));
+}
+
 TEST_F(ReportOfARun, WithoutAnySolutionShowsTheStartUnderABanner) {
   const auto result = pushed_away(1);
   ASSERT_EQ(result.steps.size(), 1u);

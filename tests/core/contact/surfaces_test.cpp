@@ -130,7 +130,8 @@ TEST(SharedNormal, IsTheBisectorForASlaveNormalOfAnyLength) {
   const double turn = 0.4;
   for (double length : {1e-3, 1.0, 1e3}) {
     auto g = against_facet<double>(Point(0, 0.5), Point(1, 0), Point(-1, 0));
-    share_normal<2, double>(g, length * Point(std::sin(turn), -std::cos(turn)));  // reversed: turned from (0, 1) by `turn`
+    share_normal<2, double>(g,
+                            length * Point(std::sin(turn), -std::cos(turn)));  // reversed: turned from (0, 1) by `turn`
     expect_vector(g, -std::sin(turn / 2), std::cos(turn / 2));
     EXPECT_NEAR(g.weights.sum(), 0, rounding);
   }
