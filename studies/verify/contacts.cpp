@@ -133,8 +133,8 @@ double Contact::integrate(const Piece& piece, int node, const Field& x, Touch& t
   double share = 0;
   const double chord = (scene_.points.col(second) - scene_.points.col(first)).norm();
   const Vec2 tau = (x.col(second) - x.col(first)).head<2>(), nu = right_of(tau).normalized();
-  for (const auto& point : edge_points(3, false)) {
-    const double s = from + (to - from) * point.s, psi = sole ? 1 : end ? s : 1 - s;
+  for (const auto& point : gauss_points("L3")) {
+    const double s = from + (to - from) * point.at[0], psi = sole ? 1 : end ? s : 1 - s;
     const double length = psi * (to - from) * point.weight * facet.at(scene_.points, s, 1).norm(),
                  dA = length * scene_.depth(body_, facet.at(scene_.points, s)[0]);
     const Vec3 x_s = facet.at(x, s);

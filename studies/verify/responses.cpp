@@ -1,6 +1,3 @@
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-
 #include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
@@ -36,15 +33,15 @@ std::optional<Vec3> displacement_at(const State& state, const Json& how) {
       const double distance = off.minCoeff(&nearest), size = off.maxCoeff();
       if (distance <= at_end * size) return Vec3(state.u.col(element[nearest]));
       if (!body.solid() || distance > (nodes.colwise() - nodes.col(0)).colwise().norm().maxCoeff()) continue;
-      Vec3 r = natural_nodes(body).rowwise().mean();
+      Vec3 r = reference(body.element).nodes.rowwise().mean();
       for (int k = 0; k < 20; ++k) {
-        const Shape at = shape(body, r);
+        const Shape at = shape(body.element, r);
         Mat3 slope = nodes * at.gradient;
         if (!body.in_space()) slope(2, 2) = 1;
         r += slope.inverse() * (X - nodes * at.value);
       }
-      const double past = body.element[0] == 'T' ? std::max(-r.minCoeff(), r.sum() - 1) : r.cwiseAbs().maxCoeff() - 1;
-      if (past <= 1e-6) return Vec3(state.u(Eigen::all, element) * shape(body, r).value);
+      const double past = std::max(-r.minCoeff(), (body.element[0] == 'T' ? r.sum() : r.maxCoeff()) - 1);
+      if (past <= 1e-6) return Vec3(state.u(Eigen::all, element) * shape(body.element, r).value);
     }
   return std::nullopt;
 }
@@ -109,8 +106,8 @@ std::optional<double> measure(const State& state, const Json& response) {
     if (kind == "contact_half_width") return half_width(state, touches, how);
   } else if (kind == "plastic_strain") {
     for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
-      for (const auto& particle : state.bodies.particles[b] | std::views::join)
-        if (state.scene.bodies[b].name == how.at("on")) samples.push_back({particle.equivalent, particle.volume});
+      for (const auto& point : state.bodies.points[b] | std::views::join)
+        if (state.scene.bodies[b].name == how.at("on")) samples.push_back({point.equivalent, point.volume});
   } else {
     for (const int node : state.scene.side(how.at("on")).nodes)
       samples.push_back({part_of(how, (force ? state.held : state.u).col(node), state.place(node)), 1});

@@ -1,29 +1,15 @@
 #include "studies/verify/scene.hpp"
 
-#include <Eigen/Geometry>
 #include <sstream>
 
 namespace stickslip::verify {
 namespace {
 
-/// The edges of an element, in space its faces, by numbers of its nodes.
-std::vector<Nodes> sides_of(const Body& body) {
-  if (body.element == "T4") return {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-  if (body.in_space()) return {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-  std::vector<Nodes> sides;
-  const int corners = static_cast<int>(body.corners());
-  for (int e = 0; e < corners; ++e) {
-    sides.push_back({e, (e + 1) % corners});
-    if (body.quadratic()) sides.back().push_back(corners + e);
-  }
-  return sides;
-}
-
 /// Edges of one element alone are of the boundary.
 std::vector<Nodes> boundary_of(const Body& body) {
   std::map<std::set<int>, std::vector<Nodes>> edges;
   for (const auto& element : body.elements)
-    for (const auto& side : sides_of(body)) {
+    for (const auto& side : reference(body.element).sides) {
       Nodes edge;
       for (const int a : side) edge.push_back(element.at(a));
       edges[{edge.begin(), edge.end()}].push_back(edge);
@@ -36,17 +22,13 @@ std::vector<Nodes> boundary_of(const Body& body) {
 
 /// Throws where elements are of no known kind or have other nodes than it, or where nodes are not there.
 void check(const Body& body, Eigen::Index nodes) {
-  static const std::map<std::string, std::size_t> sizes{{"point", 2}, {"bar", 2},
-                                                        {"T3", 3},    {"T6", 6},
-                                                        {"Q4", 4},    {"Q4_mean_dilatation", 4},
-                                                        {"Q8", 8},    {"T4", 4},
-                                                        {"H8", 8},    {"H8_mean_dilatation", 8}};
   auto lists = body.elements;
   for (const auto& [name, side] : body.sides) lists.push_back(side);
   for (const int node : lists | std::views::join)
     if (node < 0 || node >= nodes) throw BadFile(body.name + " has a node that is not there");
+  const Reference& kind = reference(body.element);
   for (const auto& element : body.elements)
-    if (!sizes.contains(body.element) || element.size() != sizes.at(body.element))
+    if (std::ssize(element) != kind.nodes.cols() || (body.solid() && kind.sides.empty()))
       throw BadFile(body.name + " has an element that is no " + body.element);
   if (body.spring() && (!body.sides.contains("node") || !body.sides.contains("anchor")))
     throw BadFile(body.name + " has no node or no anchor");
@@ -99,29 +81,54 @@ double value_at(const Json& value, double time) {
 }
 
 Motion::Motion(const Json& json) : move(part(json, "move")), rotate(part(json, "rotate")) {
-  if (!rotate.empty()) center = vec3(rotate.at("center"));
+  if (rotate.empty()) return;
+  center = vec3(rotate.at("center"));
+  if (rotate.contains("axis")) axis = vec3(rotate["axis"]).normalized();
 }
 
-Vec3 Motion::angle(double time) const {
-  if (rotate.empty()) return {0, 0, 0};
-  const Vec3 axis = rotate.contains("axis") ? vec3(rotate["axis"]).normalized() : Vec3(0, 0, 1);
-  return value_at(rotate.at("angle"), time) * std::numbers::pi / 180 * axis;
-}
-
-Mat3 Motion::turn(double time) const {
-  const Vec3 radians = angle(time);
-  return Eigen::AngleAxisd(radians.norm(), radians.stableNormalized()).toRotationMatrix();
+double Motion::angle(double time) const {
+  return rotate.empty() ? 0 : value_at(rotate.at("angle"), time) * std::numbers::pi / 180;
 }
 
 Vec3 Motion::displacement(const Vec3& X, double time, bool finite) const {
   Vec3 u = Vec3::Zero();
-  for (const auto& [axis, value] : move.items()) u[axis[0] - 'x'] = value_at(value, time);
+  for (const auto& [i, value] : move.items()) u[i[0] - 'x'] = value_at(value, time);
   const Vec3 arm = X - center;
-  return u + (finite ? Vec3(turn(time) * arm - arm) : angle(time).cross(arm));
+  return u + (finite ? Vec3(turn(time) * arm - arm) : Vec3(angle(time) * axis.cross(arm)));
 }
 
 Vec3 Motion::back(const Vec3& x, double time) const {
   return center + turn(time).transpose() * (x - displacement(center, time, true) - center);
+}
+
+const Reference& reference(const std::string& element) {
+  static const Field line{{0, 1, 0.5}, {0, 0, 0}, {0, 0, 0}},
+      triangle{{0, 1, 0, 0.5, 0.5, 0}, {0, 0, 1, 0, 0.5, 0.5}, {0, 0, 0, 0, 0, 0}},
+      square{{0, 1, 1, 0, 0.5, 1, 0.5, 0}, {0, 0, 1, 1, 0, 0.5, 1, 0.5}, {0, 0, 0, 0, 0, 0, 0, 0}},
+      tetrahedron{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
+      cube{{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
+  static const double two = 1 / std::sqrt(3.0), three = std::sqrt(0.6);  // points each way
+  const auto same = [](int n, double volume) { return Eigen::VectorXd::Constant(n, volume / n); };
+  static const std::map<std::string, Reference> all{
+      {"point", {line.leftCols(2)}},
+      {"bar", {line.leftCols(2)}},
+      {"L2", {line.leftCols(2), {}, two, same(2, 1)}},
+      {"L3", {line, {}, three, Vec3(5, 5, 8) / 18}},
+      {"T3", {triangle.leftCols(3), {{0, 1}, {1, 2}, {2, 0}}, 0.5, same(3, 0.5)}},
+      {"T6", {triangle, {{0, 1, 3}, {1, 2, 4}, {2, 0, 5}}, 0.5, same(3, 0.5)}},
+      {"Q4", {square.leftCols(4), {{0, 1}, {1, 2}, {2, 3}, {3, 0}}, two, same(4, 1)}},
+      {"Q8",
+       {square,
+        {{0, 1, 4}, {1, 2, 5}, {2, 3, 6}, {3, 0, 7}},
+        three,
+        Eigen::VectorXd{{25, 25, 25, 25, 40, 40, 40, 40, 64}} / 324}},
+      {"T4", {tetrahedron, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}, 0, same(1, 1.0 / 6)}},
+      {"H8",
+       {cube, {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}, two, same(8, 1)}}};
+  static const Reference none;
+  const bool averages = element == "Q4_mean_dilatation" || element == "H8_mean_dilatation";
+  const auto found = all.find(averages ? element.substr(0, 2) : element);
+  return found == all.end() ? none : found->second;
 }
 
 Mat3 Body::stiffness() const {

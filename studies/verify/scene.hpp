@@ -2,7 +2,7 @@
 /// have three components; in a plane the third is zero. What keys mean: docs/scene.md, docs/verify.md.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,30 +45,37 @@ double value_at(const Json& value, double time);
 /// A rigid motion x = c + R (X - c) + move of a support or an obstacle, by the axes and the angle that it prescribes.
 struct Motion {
   Json move, rotate;
-  Vec3 center = Vec3::Zero();
+  Vec3 center = Vec3::Zero(), axis = Vec3::UnitZ();
   explicit Motion(const Json& json);
-  bool prescribes(int axis) const { return !rotate.empty() || move.contains(std::string(1, "xyz"[axis])); }
-  Vec3 angle(double time) const;  ///< radians about an axis
-  Mat3 turn(double time) const;
+  bool prescribes(int i) const { return !rotate.empty() || move.contains(std::string(1, "xyz"[i])); }
+  double angle(double time) const;  ///< radians
+  Mat3 turn(double time) const { return Eigen::AngleAxisd(angle(time), axis).toRotationMatrix(); }
   /// Displacement of what is at X at the start; where strains are small, linear in the angle.
   Vec3 displacement(const Vec3& X, double time, bool finite) const;
   Vec3 back(const Vec3& x, double time) const;  ///< where it was at the start
 };
+
+/// An element in natural coordinates, 0 <= r, s, t <= 1, of triangles and tetrahedra r + s + t <= 1 too.
+struct Reference {
+  Field nodes = {};  ///< corners, counter-clockwise, then the middles of the sides in turn; in space t = 0 first
+  std::vector<Nodes> sides = {};  ///< edges: two ends, and a middle; in space faces, counter-clockwise from outside
+  /// Gauss points of full rank: the first nodes and then the middle, drawn to the middle.
+  double drawn = 0;
+  Eigen::VectorXd weights = {};
+};
+const Reference& reference(const std::string& element);  ///< L2, L3: edges; without nodes: there is no such element
 
 struct Body {
   std::string name, element;
   Json given;  ///< its entry in the scene
   std::vector<Nodes> elements;
   std::map<std::string, Nodes> sides;
-  /// Of the boundary, the solid on the left: two ends, and a middle; in space its faces, counter-clockwise seen from
-  /// outside.
-  std::vector<Nodes> edges = {};
+  std::vector<Nodes> edges = {};  ///< of the boundary, as sides of a Reference
   bool in_space() const { return element.starts_with("H8") || element == "T4"; }
   bool averages() const { return element.ends_with("mean_dilatation"); }
   bool quadratic() const { return element == "Q8" || element == "T6"; }
   bool spring() const { return element == "point"; }
   bool solid() const { return element != "bar" && !spring(); }
-  std::size_t corners() const { return in_space() ? (element == "T4" ? 4 : 8) : element[0] == 'T' ? 3 : 4; }
   double area() const { return given.value("area", 1.0); }  ///< of bars
   Mat3 stiffness() const;                                   ///< of a spring
 };

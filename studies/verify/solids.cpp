@@ -1,6 +1,3 @@
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-
 #include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
@@ -129,100 +126,57 @@ Answer respond_along(const Material& material, const Vec3& axis, const Mat3& H, 
 // --- elements --------------------------------------------------------------------------------------------------------
 
 /// The polynomials r^a s^b t^c of an element at a place, and their derivatives by r, s and t.
-Eigen::Matrix4Xd polynomials(const Body& body, const Vec3& at) {
-  static const Field triangle{{0, 1, 0, 2, 1, 0}, {0, 0, 1, 0, 1, 2}, {0, 0, 0, 0, 0, 0}},
-      square{{0, 1, 0, 1, 2, 0, 2, 1}, {0, 0, 1, 1, 0, 2, 1, 2}, {0, 0, 0, 0, 0, 0, 0, 0}},
-      tetrahedron{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
-      cube{{0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
-  const Field& all =
-      body.in_space() ? (body.element == "T4" ? tetrahedron : cube) : (body.corners() == 3 ? triangle : square);
-  const Eigen::Array3Xd p = all.leftCols(natural_nodes(body).cols());
-  const Eigen::Array3Xd power = at.array().replicate(1, p.cols()).pow(p),
-                        slope = p * at.array().replicate(1, p.cols()).pow((p - 1).max(0));
+Eigen::Matrix4Xd polynomials(const Field& nodes, const Vec3& at) {
+  Eigen::Array3Xd p = nodes.array() * ((nodes.array() == 0.5).any() ? 2 : 1);
+  if (p.cols() == 8 && p(0, 2) == 2) p.col(2) /= 2;  // Q8: r s in place of r^2 s^2
+  const Eigen::Array3Xd places = at.array().replicate(1, p.cols()), power = places.pow(p),
+                        slope = p * places.pow((p - 1).max(0));
   Eigen::Matrix4Xd rows(4, p.cols());
-  rows << power.row(0) * power.row(1) * power.row(2), slope.row(0) * power.row(1) * power.row(2),
+  rows << power.colwise().prod(), slope.row(0) * power.row(1) * power.row(2),
       power.row(0) * slope.row(1) * power.row(2), power.row(0) * power.row(1) * slope.row(2);
   return rows;
 }
 
-/// r, s, t, and a weight.
-using Gauss = std::pair<Vec3, double>;
-
-/// Rules of full rank: three points of Q8 each way, three of T3 of revolution.
-std::vector<Gauss> rule(const Body& body, bool of_revolution) {
-  if (body.element == "T3" && !of_revolution) return {{{1.0 / 3, 1.0 / 3, 0}, 0.5}};
-  if (body.element == "T4") return {{{0.25, 0.25, 0.25}, 1.0 / 6}};
-  if (body.corners() == 3) {
-    const double sixth = 1.0 / 6;
-    return {{{sixth, sixth, 0}, sixth}, {{4 * sixth, sixth, 0}, sixth}, {{sixth, 4 * sixth, 0}, sixth}};
-  }
-  std::vector<Gauss> points{{Vec3::Zero(), 1}};
-  for (int axis = 0; axis < (body.in_space() ? 3 : 2); ++axis) {
-    std::vector<Gauss> longer;
-    for (const auto& [place, weight] : points)
-      for (const auto& along : edge_points(body.quadratic() ? 3 : 2, true))
-        longer.emplace_back(place + (2 * along.s - 1) * Vec3::Unit(axis), weight * 2 * along.weight);
-    points = std::move(longer);
-  }
-  return points;
-}
-
-/// A Gauss point of an element, with gradients by coordinates of the start, and N / R of revolution.
-struct Point {
-  double volume;
-  Eigen::VectorXd value, hoop = {};
-  Eigen::MatrixX3d gradient = {};
-
-  Mat3 displacement_gradient(const Field& u) const {
-    return u * gradient + u.row(0).dot(hoop) * Vec3::UnitZ() * Vec3::UnitZ().transpose();
-  }
-  Field forces(const Mat3& stress) const {
-    return volume * (stress * gradient.transpose() + stress(2, 2) * Vec3::UnitX() * hoop.transpose());
-  }
-};
-
-Point point_of(const Scene& scene, const Body& body, const Nodes& element, const Shape& at, double weight = 0) {
+Point point_of(const Scene& scene, const Body& body, const Nodes& element, const Shape& at) {
   const Field X = scene.points(Eigen::all, element);
   Mat3 jacobian = X * at.gradient;
   if (!body.in_space()) jacobian(2, 2) = 1;
   const double radius = X.row(0).dot(at.value);
-  Point point{jacobian.determinant() * weight * scene.depth(body, radius), at.value};
-  point.hoop = (scene.axisymmetric ? 1 / radius : 0) * at.value;
-  point.gradient = at.gradient * jacobian.inverse();
-  return point;
+  return {{},
+          jacobian.determinant() * at.weight * scene.depth(body, radius),
+          at.value,
+          at.gradient * jacobian.inverse(),
+          scene.axisymmetric ? 1 / radius : 0};
 }
 
 std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& element) {
-  if (!body.solid()) {  // along a bar; of a spring the first column of H is u - u_anchor
-    const Vec2 difference(-1, 1);
-    const Vec3 T = body.spring() ? Vec3(1, 0, 0) : Vec3(scene.points(Eigen::all, element) * difference);
-    const double volume = body.spring() ? 1 : body.area() * T.norm();
-    return {{volume, Vec2(0.5, 0.5), Vec2(0, 0), difference * T.transpose() / T.squaredNorm()}};
-  }
-  static std::map<std::pair<std::string, bool>, std::vector<std::pair<Shape, double>>> known;
-  auto& shapes = known[{body.element, scene.axisymmetric}];
-  if (shapes.empty())
-    for (const auto& at : rule(body, scene.axisymmetric)) shapes.emplace_back(shape(body, at.first), at.second);
   std::vector<Point> points;
-  for (const auto& [at, weight] : shapes) points.push_back(point_of(scene, body, element, at, weight));
-  return points;
+  if (body.solid()) {
+    for (const auto& at : gauss_points(body.element, scene.axisymmetric))
+      points.push_back(point_of(scene, body, element, at));
+    return points;
+  }
+  // along a bar; of a spring the first column of H is u - u_anchor
+  const Vec2 difference(-1, 1);
+  const Vec3 T = body.spring() ? Vec3(1, 0, 0) : Vec3(scene.points(Eigen::all, element) * difference);
+  const double volume = body.spring() ? 1 : body.area() * T.norm();
+  return {{{}, volume, Vec2(0.5, 0.5), difference * T.transpose() / T.squaredNorm()}};
 }
 
 // --- bodies ----------------------------------------------------------------------------------------------------------
 
 /// What a point of a body answers to H, of which plane stress decides a part.
-Answer answer_of(const Scene& scene, const Body& body, const Material& material, const Point& point, Mat3& H,
-                 Particle& particle) {
+Answer answer_of(const Scene& scene, const Body& body, const Material& material, Mat3& H, Point& point) {
   if (body.spring()) return {body.stiffness() * H, (body.stiffness() * H).cwiseProduct(H).sum() / 2};
   const Vec3 axis = point.gradient.row(1).normalized();
-  if (!body.solid()) return respond_along(material, axis, H, scene.finite, particle);
-  return scene.plane_stress ? respond_in_plane_stress(material, H, scene.finite, particle)
-                            : respond(material, H, scene.finite, particle);
+  if (!body.solid()) return respond_along(material, axis, H, scene.finite, point);
+  return scene.plane_stress ? respond_in_plane_stress(material, H, scene.finite, point)
+                            : respond(material, H, scene.finite, point);
 }
 
 /// Forces of an element on its nodes.
-Field element_forces(const Scene& scene, const Body& body, const Material& material, const std::vector<Point>& points,
-                     const Field& u, std::vector<Particle>& particles, Bodies& bodies) {
+Field element_forces(const Scene& scene, const Body& body, const Material& material, const Field& u,
+                     std::vector<Point>& points, Bodies& bodies) {
   const bool finite = scene.finite, mean = body.averages();
   const Mat3 I = Mat3::Identity();
   const auto change = [&](const Mat3& H) { return finite ? volume_change(H) : H.trace(); };
@@ -234,59 +188,44 @@ Field element_forces(const Scene& scene, const Body& body, const Material& mater
   theta /= whole;
   Field forces = Field::Zero(3, u.cols()), varied = forces;  // varied: d theta / du
   double pressure = 0;                                       // int tr tau / 3 dV
-  for (std::size_t q = 0; q < points.size(); ++q) {
-    const Mat3 H = points[q].displacement_gradient(u), F = finite ? Mat3(I + H) : I;
+  for (auto& point : points) {
+    const Mat3 H = point.displacement_gradient(u), F = finite ? Mat3(I + H) : I;
     Mat3 h = H;
     if (mean) h += (finite ? std::expm1((std::log1p(theta) - std::log1p(change(H))) / 3) : (theta - change(H)) / 3) * F;
-    const auto answer = answer_of(scene, body, material, points[q], h, particles[q]);
-    const double volume = particles[q].volume = points[q].volume;
+    const auto answer = answer_of(scene, body, material, h, point);
     bodies.inverted |= answer.inverted;
-    bodies.energy += answer.energy * volume;
-    bodies.plastic_work += answer.plastic_work * volume;
+    bodies.energy += answer.energy * point.volume;
+    bodies.plastic_work += answer.plastic_work * point.volume;
     Mat3 stress = answer.stress;
     if (mean) {
       const Mat3 tau = finite ? Mat3(stress * (I + h).transpose()) : stress, back = F.inverse().transpose();
       stress = (tau - tau.trace() / 3 * I) * back;
-      pressure += tau.trace() / 3 * volume;
-      varied += points[q].forces((finite ? (1 + change(H)) / (1 + theta) : 1) / whole * back);
+      pressure += tau.trace() / 3 * point.volume;
+      varied += point.forces((finite ? (1 + change(H)) / (1 + theta) : 1) / whole * back);
     }
-    forces += points[q].forces(stress);
+    forces += point.forces(stress);
   }
   return forces + pressure * varied;
 }
 
 // --- loads -----------------------------------------------------------------------------------------------------------
 
-/// Integrates over a face of three or four nodes at `places`: as over_side().
-template <class F>
-void over_face(const Side& side, const Nodes& face, const Field& places, F&& add) {
-  const Body as{"", face.size() == 3 ? "T3" : "Q4", {}, {}, {}};  // a face is an element of a surface
-  const Field at = places(Eigen::all, face);
-  for (const auto& [place, weight] : rule(as, false)) {
-    const Shape N = shape(as, place);
-    const Vec3 outward = (at * N.gradient.col(0)).cross(at * N.gradient.col(1));
-    for (std::size_t a = 0; a < face.size(); ++a)
-      if (side.has(face[a])) add(face[a], weight * N.value[a], outward, face, 0.0);
-  }
-}
-
 /// Integrates over a side, of edges or faces at `places`: adds up, at each of its nodes, a weight times N, and the vector
 /// area out of the body that it stands for; of an edge, at a place of it.
 template <class F>
 void over_side(const Scene& scene, const Body& body, const Side& side, const Field& places, F&& add) {
-  if (body.in_space()) {
-    for (const auto& face : side.edges) over_face(side, face, places, add);
-    return;
-  }
-  for (const auto& edge : side.edges)
-    for (const auto& point : edge_points(edge.size(), scene.axisymmetric)) {
-      const Field at = places(Eigen::all, edge);
-      const Vec3 tau = at * point.slope;
+  for (const auto& edge : side.edges) {
+    const std::string kind = body.in_space() ? (edge.size() == 3 ? "T3" : "Q4") : (edge.size() == 3 ? "L3" : "L2");
+    const Field at = places(Eigen::all, edge);
+    for (const auto& point : gauss_points(kind, scene.axisymmetric)) {
+      const Vec3 tau = at * point.gradient.col(0), across = at * point.gradient.col(1);
+      const Vec3 outward = body.in_space() ? tau.cross(across) : Vec3(tau[1], -tau[0], tau[2]);
       const double width = point.weight * scene.depth(body, at.row(0).dot(point.value));
       for (std::size_t a = 0; a < edge.size(); ++a)
         if (side.has(edge[a]))  // (of a bar the length alone has a meaning)
-          add(edge[a], width * point.value[a], Vec3(tau[1], -tau[0], tau[2]), edge, point.s);
+          add(edge[a], width * point.value[a], outward, edge, point.at[0]);
     }
+  }
 }
 
 /// Present stretch of the thickness at a place of an edge, of rubber in plane stress: F_33 of the element behind.
@@ -295,13 +234,11 @@ double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge
     return std::ranges::count(nodes, edge[0]) + std::ranges::count(nodes, edge[1]) == 2;
   });
   const auto corner = [&](int node) -> Vec3 {
-    return natural_nodes(body).col(std::ranges::find(element, node) - element.begin());
+    return reference(body.element).nodes.col(std::ranges::find(element, node) - element.begin());
   };
-  const Shape at = shape(body, (1 - s) * corner(edge[0]) + s * corner(edge[1]));
-  const Point point = point_of(scene, body, element, at);
+  Point point = point_of(scene, body, element, shape(body.element, (1 - s) * corner(edge[0]) + s * corner(edge[1])));
   Mat3 H = point.displacement_gradient(u(Eigen::all, element));
-  Particle none;
-  answer_of(scene, body, Material(body), point, H, none);
+  answer_of(scene, body, Material(body), H, point);
   return 1 + H(2, 2);
 }
 
@@ -317,34 +254,27 @@ double factor_of(const Scene& scene, std::size_t index, const Json& load, double
 
 }  // namespace
 
-Field natural_nodes(const Body& body) {
-  static const Field triangle{{0, 1, 0, 0.5, 0.5, 0}, {0, 0, 1, 0, 0.5, 0.5}, {0, 0, 0, 0, 0, 0}},
-      square{{-1, 1, 1, -1, 0, 1, 0, -1}, {-1, -1, 1, 1, -1, 0, 1, 0}, {0, 0, 0, 0, 0, 0, 0, 0}},
-      tetrahedron{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
-      cube{{-1, 1, 1, -1, -1, 1, 1, -1}, {-1, -1, 1, 1, -1, -1, 1, 1}, {-1, -1, -1, -1, 1, 1, 1, 1}};
-  if (body.in_space()) return body.element == "T4" ? tetrahedron : cube;
-  const auto nodes = static_cast<Eigen::Index>(body.corners() * (body.quadratic() ? 2 : 1));
-  return (body.corners() == 3 ? triangle : square).leftCols(nodes);
-}
-
-Shape shape(const Body& body, const Vec3& at) {
-  const Field nodes = natural_nodes(body);
+Shape shape(const std::string& element, const Vec3& at) {
+  const Field& nodes = reference(element).nodes;
   Eigen::MatrixXd at_nodes(nodes.cols(), nodes.cols());
-  for (Eigen::Index a = 0; a < nodes.cols(); ++a) at_nodes.row(a) = polynomials(body, nodes.col(a)).row(0);
-  const Eigen::Matrix4Xd N = polynomials(body, at) * at_nodes.inverse();
-  return {N.row(0), N.bottomRows<3>().transpose()};
+  for (Eigen::Index a = 0; a < nodes.cols(); ++a) at_nodes.row(a) = polynomials(nodes, nodes.col(a)).row(0);
+  const Eigen::Matrix4Xd N = polynomials(nodes, at) * at_nodes.inverse();
+  return {at, N.row(0), N.bottomRows<3>().transpose()};
 }
 
-std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution) {
-  const auto at = [&](double s, double weight) -> EdgePoint {
-    if (nodes == 2) return {weight, s, Vec2(1 - s, s), Vec2(-1, 1)};
-    return {weight, s, Vec3((1 - s) * (1 - 2 * s), s * (2 * s - 1), 4 * s * (1 - s)),
-            Vec3(4 * s - 3, 4 * s - 1, 4 - 8 * s)};
-  };
-  const double two = std::sqrt(3.0) / 6, three = std::sqrt(0.6) / 2;
-  if (nodes == 3) return {at(0.5 - three, 5.0 / 18), at(0.5, 8.0 / 18), at(0.5 + three, 5.0 / 18)};
-  if (of_revolution) return {at(0.5 - two, 0.5), at(0.5 + two, 0.5)};
-  return {at(0.5, 1)};
+const std::vector<Shape>& gauss_points(const std::string& element, bool of_revolution) {
+  static std::map<std::pair<std::string, bool>, std::vector<Shape>> known;
+  auto& points = known[{element, of_revolution}];
+  if (!points.empty()) return points;
+  const auto& [nodes, sides, drawn, weights] = reference(element);
+  const Vec3 middle = nodes.rowwise().mean();
+  const bool one = !of_revolution && (element == "T3" || element == "L2");  // gradients are constant
+  for (Eigen::Index k = 0; k < (one ? 1 : weights.size()); ++k) {
+    const bool is_middle = one || k == nodes.cols();
+    points.push_back(shape(element, is_middle ? middle : Vec3(middle + drawn * (nodes.col(k) - middle))));
+    points.back().weight = one ? weights.sum() : weights[k];
+  }
+  return points;
 }
 
 std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side) {
@@ -356,29 +286,40 @@ std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side&
   return areas;
 }
 
-Bodies deform(const Scene& scene, const Field& u, const Bodies& before) {
-  Bodies bodies;
-  bodies.forces = Field::Zero(3, u.cols());
-  bodies.particles = before.particles;
-  bodies.particles.resize(scene.bodies.size());
+Mat3 Point::displacement_gradient(const Field& u) const {
+  Mat3 H = u * gradient;
+  H(2, 2) += hoop * u.row(0).dot(value);
+  return H;
+}
+
+Field Point::forces(const Mat3& stress) const {
+  Field forces = stress * gradient.transpose();
+  forces.row(0) += stress(2, 2) * hoop * value.transpose();
+  return volume * forces;
+}
+
+Bodies::Bodies(const Scene& scene) {
+  for (const auto& body : scene.bodies) {
+    const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area();
+    stiffness = std::max(stiffness, body.spring() ? body.stiffness().maxCoeff() : Material(body).E * depth);
+    auto& of = points.emplace_back();
+    for (const auto& element : body.elements) of.push_back(points_of(scene, body, element));
+  }
+}
+
+void Bodies::deform(const Scene& scene, const Field& u) {
+  forces = Field::Zero(3, u.cols());
+  largest = energy = plastic_work = inverted = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     const Material material(body);
-    const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area();
-    const double stiffness = body.spring() ? body.stiffness().maxCoeff() : material.E * depth;
-    bodies.stiffness = std::max(bodies.stiffness, stiffness);
-    bodies.particles[b].resize(body.elements.size());
     for (std::size_t e = 0; e < body.elements.size(); ++e) {
       const Nodes& element = body.elements[e];
-      const auto points = points_of(scene, body, element);
-      bodies.particles[b][e].resize(points.size());
-      const auto forces =
-          element_forces(scene, body, material, points, u(Eigen::all, element), bodies.particles[b][e], bodies);
-      bodies.forces(Eigen::all, element) += forces;
-      bodies.largest = std::max(bodies.largest, forces.colwise().norm().maxCoeff());
+      const auto of = element_forces(scene, body, material, u(Eigen::all, element), points[b][e], *this);
+      forces(Eigen::all, element) += of;
+      largest = std::max(largest, of.colwise().norm().maxCoeff());
     }
   }
-  return bodies;
 }
 
 Field load_forces(const Scene& scene, const Field& u, double time) {

@@ -7,51 +7,55 @@
 namespace stickslip::verify {
 
 // --- solids ----------------------------------------------------------------------------------------------------------
-// Without tangents, which a check does not need (core/README.md, Elements, Shares). Corners come first, then the
-// middles of the sides in turn, counter-clockwise. A square is [-1, 1]^2, a triangle r, s >= 0, r + s <= 1; in space a
-// cube is [-1, 1]^3, its nodes at t = -1 first, a tetrahedron r, s, t >= 0, r + s + t <= 1.
+// Without tangents, which a check does not need (core/README.md, Elements, Shares).
 //
 //   f_a = int P grad N_a dV,   of revolution + e_r int P_33 N_a / R dV,   H = sum u_a (x) grad N_a,  H_33 = u_r / R
 //   mean dilatation: F -> (theta / J)^(1/3) F, theta the mean of J; small: H -> H + (theta - tr H) / 3 I  [H80, MOS90]
 //   bar:  N = E A e,  e = (T.d + d.d / 2) / L^2 at finite strain, T.d / L^2 at small;  spring: f = K (u - u_anchor)
 
-Field natural_nodes(const Body& body);  ///< r, s, t of each node of an element; in the plane t = 0
-
 /// Shape functions N at a place: the polynomials that are 1 at their node and 0 at the others; their gradients by r, s, t.
 struct Shape {
+  Vec3 at;
   Eigen::VectorXd value;
   Eigen::MatrixX3d gradient;
+  double weight = 0;  ///< of a Gauss point
 };
-Shape shape(const Body& body, const Vec3& at);
-
-/// A Gauss point of an edge: weight, place from its first end to its second, shape functions and their slopes.
-struct EdgePoint {
-  double weight, s;
-  Eigen::VectorXd value, slope;
-};
-std::vector<EdgePoint> edge_points(std::size_t nodes, bool of_revolution);
+Shape shape(const std::string& element, const Vec3& at);
+/// Of full rank; of revolution the linear elements need more than one.
+const std::vector<Shape>& gauss_points(const std::string& element, bool of_revolution = false);
 
 /// Areas of the start that belong to the nodes of a side: int N dA; 1 of each where it has no edges.
 std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side);
 
-/// What a point of a body remembers: plastic strain (at finite strain C_p^-1 - I), and the equivalent plastic strain.
+/// What a point of a body remembers.
 struct Particle {
-  Mat3 strain = Mat3::Zero();
-  double equivalent = 0, volume = 0;
+  Mat3 strain = Mat3::Zero();  ///< plastic; at finite strain C_p^-1 - I
+  double equivalent = 0;       ///< plastic strain
+};
+
+/// A Gauss point of a body.
+struct Point : Particle {
+  double volume;
+  Eigen::VectorXd value;      ///< N
+  Eigen::MatrixX3d gradient;  ///< of N, by coordinates of the start
+  double hoop = 0;            ///< 1 / R of revolution
+  Mat3 displacement_gradient(const Field& u) const;
+  Field forces(const Mat3& stress) const;  ///< of the nodes
 };
 
 /// What bodies do at a motion.
 struct Bodies {
-  Field forces;                                               ///< f_int of each node
-  double largest = 0;                                         ///< force of an element on a node, of all
-  double energy = 0, plastic_work = 0;                        ///< stored; of this increment
-  double stiffness = 0;                                       ///< force per length: largest modulus times a depth
-  bool inverted = false;                                      ///< whether an element is
-  std::vector<std::vector<std::vector<Particle>>> particles;  ///< of each body, element and point
-};
+  Field forces;                                         ///< f_int of each node
+  double largest = 0;                                   ///< force of an element on a node, of all
+  double energy = 0, plastic_work = 0;                  ///< stored; of this increment
+  double stiffness = 0;                                 ///< force per length: largest modulus times a depth
+  bool inverted = false;                                ///< whether an element is
+  std::vector<std::vector<std::vector<Point>>> points;  ///< of each body and element
 
-/// The bodies at displacements u, from what they were at the end of the last increment; `{}` at the start.
-Bodies deform(const Scene& scene, const Field& u, const Bodies& before);
+  explicit Bodies(const Scene& scene);
+  /// To displacements u, from what they were at the end of the last increment.
+  void deform(const Scene& scene, const Field& u);
+};
 
 /// Nodal forces of the loads at a time. A pressure follows its side at finite strain.
 Field load_forces(const Scene& scene, const Field& u, double time);

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-#include <Eigen/QR>
-
 #include "studies/verify/state.hpp"
 
 namespace stickslip::verify {
@@ -114,7 +111,7 @@ double bound(const Json& contact, double pressure) {
 /// Checks increment after increment, and remembers what the next needs.
 class Judge {
  public:
-  Judge(const Json& scene, const Json& mesh) : scene_(scene, mesh) {
+  Judge(const Json& scene, const Json& mesh) : scene_(scene, mesh), bodies_(scene_) {
     for (const auto& [name, sides] : part(mesh, "contacts").items()) contacts_.emplace_back(scene_, name, sides);
     u_ = outer_ = contact_ = Field::Zero(3, scene_.points.cols());
   }
@@ -124,7 +121,7 @@ class Judge {
     Step step{increment.at("time"), {}};
     const Json& given_u = increment.at("displacement");
     const Field before = std::exchange(u_, vectors(given_u, scene_.dimension, u_.cols(), "displacement"));
-    bodies_ = deform(scene_, u_, bodies_);
+    bodies_.deform(scene_, u_);
     note(step, elements, bodies_.inverted, "of a body");
     const Field loads = load_forces(scene_, u_, step.time);
     L_ = std::max({L_, u_.cwiseAbs().maxCoeff(), loads.colwise().norm().maxCoeff() * over(bodies_.stiffness)});
@@ -341,12 +338,12 @@ class Judge {
   void check_flow(const Json& given, Step& step) {
     for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
       const Json& means = part(given, scene_.bodies[b].name);
-      auto& particles = bodies_.particles[b];
+      const auto& points = bodies_.points[b];
       double largest = least_strain;
-      for (const auto& particle : particles | std::views::join) largest = std::max(largest, particle.equivalent);
+      for (const auto& point : points | std::views::join) largest = std::max(largest, point.equivalent);
       for (std::size_t e = 0; e < means.size(); ++e) {
         Vec2 sum(0, 0);
-        for (const auto& particle : particles.at(e)) sum += particle.volume * Vec2(particle.equivalent, 1);
+        for (const auto& point : points.at(e)) sum += point.volume * Vec2(point.equivalent, 1);
         note(step, flow, std::abs(means[e].get<double>() - sum[0] / sum[1]) / largest,
              fmt::format("{}, element {}", scene_.bodies[b].name, e));
       }
