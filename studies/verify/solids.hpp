@@ -1,7 +1,19 @@
-#include "studies/verify/state.hpp"
+/// Laws of materials, elements, bodies and loads, without tangents, which a check does not need (core/README.md, Elements, Shares).
+///
+///   f_a = int P grad N_a dV,   of revolution + e_r int P_33 N_a / R dV,   H = sum u_a (x) grad N_a,  H_33 = u_r / R
+///   mean dilatation: F -> (theta / J)^(1/3) F, theta the mean of J; small: H -> H + (theta - tr H) / 3 I  [H80, MOS90]
+///   bar:  N = E A e,  e = (T.d + d.d / 2) / L^2 at finite strain, T.d / L^2 at small;  spring: f = K (u - u_anchor)
+#pragma once
+
+#include "studies/verify/scene.hpp"
 
 namespace stickslip::verify {
-namespace {
+
+/// What a point of a body remembers.
+struct Particle {
+  Mat3 strain = Mat3::Zero();  ///< plastic; at finite strain C_p^-1 - I
+  double equivalent = 0;       ///< plastic strain
+};
 
 // --- laws of materials -----------------------------------------------------------------------------------------------
 // From their formulas (core/README.md, Plasticity, Plane stress). H = F - I is the displacement gradient, 3 x 3;
@@ -57,7 +69,7 @@ struct Answer {
 };
 
 /// det(I + H) - 1, without loss of digits where H is small.
-double volume_change(const Mat3& H) {
+inline double volume_change(const Mat3& H) {
   return H.trace() + (H.trace() * H.trace() - (H * H).trace()) / 2 + H.determinant();
 }
 
@@ -68,7 +80,7 @@ Mat3 of_principal(const Mat3& tensor, F&& f) {
   return eigen.eigenvectors() * eigen.eigenvalues().unaryExpr(f).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-Answer respond(const Material& material, const Mat3& H, bool finite, Particle& particle) {
+inline Answer respond(const Material& material, const Mat3& H, bool finite, Particle& particle) {
   Answer answer;
   const double change = volume_change(H), lame = material.lame, G = material.G;
   answer.inverted = finite && !(change > -1);
@@ -98,23 +110,20 @@ Answer respond(const Material& material, const Mat3& H, bool finite, Particle& p
 }
 
 /// The same without stress across the plane; H(2, 2) is what makes it so.
-Answer respond_in_plane_stress(const Material& material, Mat3& H, bool finite, Particle& particle) {
-  const auto across = [&](double h) {  // rises with h
-    Particle tried = particle;
-    H(2, 2) = h;
-    const auto answer = respond(material, H, finite, tried);
-    return answer.inverted ? -infinity : answer.stress(2, 2);
-  };
+inline Answer respond_in_plane_stress(const Material& material, Mat3& H, bool finite, Particle& particle) {
   double low = -1e6, high = 1e6;
   for (int k = 0; k < 150; ++k) {  // to 1e-39
-    const double middle = (low + high) / 2;
-    (across(middle) < 0 ? low : high) = middle;
+    H(2, 2) = (low + high) / 2;
+    Particle tried = particle;
+    const auto answer = respond(material, H, finite, tried);
+    (answer.inverted || answer.stress(2, 2) < 0 ? low : high) = H(2, 2);  // the stress rises with it
   }
   return respond(material, H, finite, particle);
 }
 
 /// A bar along an axis: S = E (e - e_p), e of Green at finite strain.
-Answer respond_along(const Material& material, const Vec3& axis, const Mat3& H, bool finite, Particle& particle) {
+inline Answer respond_along(const Material& material, const Vec3& axis, const Mat3& H, bool finite,
+                            Particle& particle) {
   const Vec3 stretch = H * axis, now = axis + (finite ? 1.0 : 0.0) * stretch;
   const double trial = stretch.dot(axis + now) / 2 - particle.strain(0, 0), q = material.E * std::abs(trial);
   const double d = material.growth(q, material.E, particle.equivalent), e = trial - std::copysign(d, trial);
@@ -125,8 +134,35 @@ Answer respond_along(const Material& material, const Vec3& axis, const Mat3& H, 
 
 // --- elements --------------------------------------------------------------------------------------------------------
 
+/// Shape functions N at a place: the polynomials that are 1 at their node and 0 at the others; their gradients by r, s, t.
+struct Shape {
+  Vec3 at;
+  Eigen::VectorXd value;
+  Eigen::MatrixX3d gradient;
+  double weight = 0;  ///< of a Gauss point
+};
+
+/// A Gauss point of a body.
+struct Point : Particle {
+  double volume;
+  Eigen::VectorXd value;      ///< N
+  Eigen::MatrixX3d gradient;  ///< of N, by coordinates of the start
+  double hoop = 0;            ///< 1 / R of revolution
+  Mat3 displacement_gradient(const Field& u) const {
+    Mat3 H = u * gradient;
+    H(2, 2) += hoop * u.row(0).dot(value);
+    return H;
+  }
+  /// Of the nodes.
+  Field forces(const Mat3& stress) const {
+    Field forces = stress * gradient.transpose();
+    forces.row(0) += stress(2, 2) * hoop * value.transpose();
+    return volume * forces;
+  }
+};
+
 /// The polynomials r^a s^b t^c of an element at a place, and their derivatives by r, s and t.
-Eigen::Matrix4Xd polynomials(const Field& nodes, const Vec3& at) {
+inline Eigen::Matrix4Xd polynomials(const Field& nodes, const Vec3& at) {
   Eigen::Array3Xd p = nodes.array() * ((nodes.array() == 0.5).any() ? 2 : 1);
   if (p.cols() == 8 && p(0, 2) == 2) p.col(2) /= 2;  // Q8: r s in place of r^2 s^2
   const Eigen::Array3Xd places = at.array().replicate(1, p.cols()), power = places.pow(p),
@@ -137,7 +173,31 @@ Eigen::Matrix4Xd polynomials(const Field& nodes, const Vec3& at) {
   return rows;
 }
 
-Point point_of(const Scene& scene, const Body& body, const Nodes& element, const Shape& at) {
+inline Shape shape(const std::string& element, const Vec3& at) {
+  const Field& nodes = reference(element).nodes;
+  Eigen::MatrixXd at_nodes(nodes.cols(), nodes.cols());
+  for (Eigen::Index a = 0; a < nodes.cols(); ++a) at_nodes.row(a) = polynomials(nodes, nodes.col(a)).row(0);
+  const Eigen::Matrix4Xd N = polynomials(nodes, at) * at_nodes.inverse();
+  return {at, N.row(0), N.bottomRows<3>().transpose()};
+}
+
+/// Of full rank; of revolution the linear elements need more than one.
+inline const std::vector<Shape>& gauss_points(const std::string& element, bool of_revolution = false) {
+  static std::map<std::pair<std::string, bool>, std::vector<Shape>> known;
+  auto& points = known[{element, of_revolution}];
+  if (!points.empty()) return points;
+  const auto& [nodes, sides, drawn, weights] = reference(element);
+  const Vec3 middle = nodes.rowwise().mean();
+  const bool one = !of_revolution && (element == "T3" || element == "L2");  // gradients are constant
+  for (Eigen::Index k = 0; k < (one ? 1 : weights.size()); ++k) {
+    const bool is_middle = one || k == nodes.cols();
+    points.push_back(shape(element, is_middle ? middle : Vec3(middle + drawn * (nodes.col(k) - middle))));
+    points.back().weight = one ? weights.sum() : weights[k];
+  }
+  return points;
+}
+
+inline Point point_of(const Scene& scene, const Body& body, const Nodes& element, const Shape& at) {
   const Field X = scene.points(Eigen::all, element);
   Mat3 jacobian = X * at.gradient;
   if (!body.in_space()) jacobian(2, 2) = 1;
@@ -149,7 +209,7 @@ Point point_of(const Scene& scene, const Body& body, const Nodes& element, const
           scene.axisymmetric ? 1 / radius : 0};
 }
 
-std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& element) {
+inline std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& element) {
   std::vector<Point> points;
   if (body.solid()) {
     for (const auto& at : gauss_points(body.element, scene.axisymmetric))
@@ -166,7 +226,7 @@ std::vector<Point> points_of(const Scene& scene, const Body& body, const Nodes& 
 // --- bodies ----------------------------------------------------------------------------------------------------------
 
 /// What a point of a body answers to H, of which plane stress decides a part.
-Answer answer_of(const Scene& scene, const Body& body, const Material& material, Mat3& H, Point& point) {
+inline Answer answer_of(const Scene& scene, const Body& body, const Material& material, Mat3& H, Point& point) {
   if (body.spring()) return {body.stiffness() * H, (body.stiffness() * H).cwiseProduct(H).sum() / 2};
   const Vec3 axis = point.gradient.row(1).normalized();
   if (!body.solid()) return respond_along(material, axis, H, scene.finite, point);
@@ -174,39 +234,76 @@ Answer answer_of(const Scene& scene, const Body& body, const Material& material,
                             : respond(material, H, scene.finite, point);
 }
 
-/// Forces of an element on its nodes.
-Field element_forces(const Scene& scene, const Body& body, const Material& material, const Field& u,
-                     std::vector<Point>& points, Bodies& bodies) {
-  const bool finite = scene.finite, mean = body.averages();
-  const Mat3 I = Mat3::Identity();
-  const auto change = [&](const Mat3& H) { return finite ? volume_change(H) : H.trace(); };
-  double whole = 0, theta = 0;  // volume, and mean of J - 1 or tr H
-  for (const auto& point : points) {
-    whole += point.volume;
-    theta += point.volume * change(point.displacement_gradient(u));
-  }
-  theta /= whole;
-  Field forces = Field::Zero(3, u.cols()), varied = forces;  // varied: d theta / du
-  double pressure = 0;                                       // int tr tau / 3 dV
-  for (auto& point : points) {
-    const Mat3 H = point.displacement_gradient(u), F = finite ? Mat3(I + H) : I;
-    Mat3 h = H;
-    if (mean) h += (finite ? std::expm1((std::log1p(theta) - std::log1p(change(H))) / 3) : (theta - change(H)) / 3) * F;
-    const auto answer = answer_of(scene, body, material, h, point);
-    bodies.inverted |= answer.inverted;
-    bodies.energy += answer.energy * point.volume;
-    bodies.plastic_work += answer.plastic_work * point.volume;
-    Mat3 stress = answer.stress;
-    if (mean) {
-      const Mat3 tau = finite ? Mat3(stress * (I + h).transpose()) : stress, back = F.inverse().transpose();
-      stress = (tau - tau.trace() / 3 * I) * back;
-      pressure += tau.trace() / 3 * point.volume;
-      varied += point.forces((finite ? (1 + change(H)) / (1 + theta) : 1) / whole * back);
+/// What bodies do at a motion.
+struct Bodies {
+  Field forces;                                         ///< f_int of each node
+  double largest = 0;                                   ///< force of an element on a node, of all
+  double energy = 0, plastic_work = 0;                  ///< stored; of this increment
+  double stiffness = 0;                                 ///< force per length: largest modulus times a depth
+  bool inverted = false;                                ///< whether an element is
+  std::vector<std::vector<std::vector<Point>>> points;  ///< of each body and element
+
+  explicit Bodies(const Scene& scene) {
+    for (const auto& body : scene.bodies) {
+      const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area();
+      stiffness = std::max(stiffness, body.spring() ? body.stiffness().maxCoeff() : Material(body).E * depth);
+      auto& of = points.emplace_back();
+      for (const auto& element : body.elements) of.push_back(points_of(scene, body, element));
     }
-    forces += point.forces(stress);
   }
-  return forces + pressure * varied;
-}
+
+  /// To displacements u, from what they were at the end of the last increment.
+  void deform(const Scene& scene, const Field& u) {
+    forces = Field::Zero(3, u.cols());
+    largest = energy = plastic_work = inverted = 0;
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      const Body& body = scene.bodies[b];
+      const Material material(body);
+      for (std::size_t e = 0; e < body.elements.size(); ++e) {
+        const Nodes& element = body.elements[e];
+        const auto of = element_forces(scene, body, material, u(Eigen::all, element), points[b][e]);
+        forces(Eigen::all, element) += of;
+        largest = std::max(largest, of.colwise().norm().maxCoeff());
+      }
+    }
+  }
+
+ private:
+  /// Forces of an element on its nodes.
+  Field element_forces(const Scene& scene, const Body& body, const Material& material, const Field& u,
+                       std::vector<Point>& points) {
+    const bool finite = scene.finite, mean = body.averages();
+    const Mat3 I = Mat3::Identity();
+    const auto change = [&](const Mat3& H) { return finite ? volume_change(H) : H.trace(); };
+    double whole = 0, theta = 0;  // volume, and mean of J - 1 or tr H
+    for (const auto& point : points) {
+      whole += point.volume;
+      theta += point.volume * change(point.displacement_gradient(u));
+    }
+    theta /= whole;
+    Field all = Field::Zero(3, u.cols()), varied = all;  // varied: d theta / du
+    double pressure = 0;                                 // int tr tau / 3 dV
+    for (auto& point : points) {
+      const Mat3 H = point.displacement_gradient(u), F = finite ? Mat3(I + H) : I;
+      Mat3 h = H;
+      if (mean)
+        h += (finite ? std::expm1((std::log1p(theta) - std::log1p(change(H))) / 3) : (theta - change(H)) / 3) * F;
+      const auto answer = answer_of(scene, body, material, h, point);
+      inverted |= answer.inverted;
+      energy += answer.energy * point.volume;
+      plastic_work += answer.plastic_work * point.volume;
+      Mat3 stress = answer.stress;
+      if (mean) {
+        const Mat3 tau = finite ? Mat3(stress * (I + h).transpose()) : stress, back = F.inverse().transpose();
+        stress = (tau - tau.trace() / 3 * I) * back;
+        pressure += tau.trace() / 3 * point.volume;
+        varied += point.forces((finite ? (1 + change(H)) / (1 + theta) : 1) / whole * back);
+      }
+      all += point.forces(stress);
+    }
+    return all + pressure * varied;
+  }
+};
 
 // --- loads -----------------------------------------------------------------------------------------------------------
 
@@ -229,7 +326,7 @@ void over_side(const Scene& scene, const Body& body, const Side& side, const Fie
 }
 
 /// Present stretch of the thickness at a place of an edge, of rubber in plane stress: F_33 of the element behind.
-double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge, double s, const Field& u) {
+inline double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge, double s, const Field& u) {
   const Nodes& element = *std::ranges::find_if(body.elements, [&](const Nodes& nodes) {
     return std::ranges::count(nodes, edge[0]) + std::ranges::count(nodes, edge[1]) == 2;
   });
@@ -243,7 +340,7 @@ double thickness_stretch(const Scene& scene, const Body& body, const Nodes& edge
 }
 
 /// The factor of a load: its history, which along a path by arc length goes on straight, in proportion to the time.
-double factor_of(const Scene& scene, std::size_t index, const Json& load, double time) {
+inline double factor_of(const Scene& scene, std::size_t index, const Json& load, double time) {
   const Json& when = scene.json.at("time");
   const double end = when.value("end", 0.0);
   const std::size_t driven = part(part(when, "control"), "arc_length").value("load", std::size_t{0});
@@ -252,32 +349,8 @@ double factor_of(const Scene& scene, std::size_t index, const Json& load, double
   return along_path ? factor * time / end : factor;
 }
 
-}  // namespace
-
-Shape shape(const std::string& element, const Vec3& at) {
-  const Field& nodes = reference(element).nodes;
-  Eigen::MatrixXd at_nodes(nodes.cols(), nodes.cols());
-  for (Eigen::Index a = 0; a < nodes.cols(); ++a) at_nodes.row(a) = polynomials(nodes, nodes.col(a)).row(0);
-  const Eigen::Matrix4Xd N = polynomials(nodes, at) * at_nodes.inverse();
-  return {at, N.row(0), N.bottomRows<3>().transpose()};
-}
-
-const std::vector<Shape>& gauss_points(const std::string& element, bool of_revolution) {
-  static std::map<std::pair<std::string, bool>, std::vector<Shape>> known;
-  auto& points = known[{element, of_revolution}];
-  if (!points.empty()) return points;
-  const auto& [nodes, sides, drawn, weights] = reference(element);
-  const Vec3 middle = nodes.rowwise().mean();
-  const bool one = !of_revolution && (element == "T3" || element == "L2");  // gradients are constant
-  for (Eigen::Index k = 0; k < (one ? 1 : weights.size()); ++k) {
-    const bool is_middle = one || k == nodes.cols();
-    points.push_back(shape(element, is_middle ? middle : Vec3(middle + drawn * (nodes.col(k) - middle))));
-    points.back().weight = one ? weights.sum() : weights[k];
-  }
-  return points;
-}
-
-std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side) {
+/// Areas of the start that belong to the nodes of a side: int N dA; 1 of each where it has no edges.
+inline std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side& side) {
   std::map<int, double> areas;
   over_side(scene, body, side, scene.points,
             [&](int node, double share, const Vec3& outward, auto&&...) { areas[node] += share * outward.norm(); });
@@ -286,43 +359,8 @@ std::map<int, double> areas_of(const Scene& scene, const Body& body, const Side&
   return areas;
 }
 
-Mat3 Point::displacement_gradient(const Field& u) const {
-  Mat3 H = u * gradient;
-  H(2, 2) += hoop * u.row(0).dot(value);
-  return H;
-}
-
-Field Point::forces(const Mat3& stress) const {
-  Field forces = stress * gradient.transpose();
-  forces.row(0) += stress(2, 2) * hoop * value.transpose();
-  return volume * forces;
-}
-
-Bodies::Bodies(const Scene& scene) {
-  for (const auto& body : scene.bodies) {
-    const double depth = body.solid() ? scene.depth(body, scene.points.row(0).maxCoeff()) : body.area();
-    stiffness = std::max(stiffness, body.spring() ? body.stiffness().maxCoeff() : Material(body).E * depth);
-    auto& of = points.emplace_back();
-    for (const auto& element : body.elements) of.push_back(points_of(scene, body, element));
-  }
-}
-
-void Bodies::deform(const Scene& scene, const Field& u) {
-  forces = Field::Zero(3, u.cols());
-  largest = energy = plastic_work = inverted = 0;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    const Material material(body);
-    for (std::size_t e = 0; e < body.elements.size(); ++e) {
-      const Nodes& element = body.elements[e];
-      const auto of = element_forces(scene, body, material, u(Eigen::all, element), points[b][e], *this);
-      forces(Eigen::all, element) += of;
-      largest = std::max(largest, of.colwise().norm().maxCoeff());
-    }
-  }
-}
-
-Field load_forces(const Scene& scene, const Field& u, double time) {
+/// Nodal forces of the loads at a time. A pressure follows its side at finite strain.
+inline Field load_forces(const Scene& scene, const Field& u, double time) {
   Field forces = Field::Zero(3, u.cols());
   const Json& loads = part(scene.json, "loads");
   for (std::size_t k = 0; k < loads.size(); ++k) {
