@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-#include <Eigen/QR>
-
-#include "studies/verify/state.hpp"
+#include "studies/verify/responses.hpp"
 
 namespace stickslip::verify {
 namespace {
@@ -112,29 +109,26 @@ double bound(const Json& contact, double pressure) {
 }
 
 /// Checks increment after increment, and remembers what the next needs.
-class Judge {
+class Judge : State {
  public:
-  Judge(const Json& scene, const Json& mesh) : scene_(scene, mesh) {
-    for (const auto& [name, sides] : part(mesh, "contacts").items()) contacts_.emplace_back(scene_, name, sides);
-    u_ = outer_ = contact_ = Field::Zero(3, scene_.points.cols());
-  }
+  using State::State;
 
   /// `given`: the responses of the increment as whoever solved it measured them; null: none.
   Step read(const Json& increment, const Json& given) {
     Step step{increment.at("time"), {}};
     const Json& given_u = increment.at("displacement");
-    const Field before = std::exchange(u_, vectors(given_u, scene_.dimension, u_.cols(), "displacement"));
-    bodies_ = deform(scene_, u_, bodies_);
-    note(step, elements, bodies_.inverted, "of a body");
-    const Field loads = load_forces(scene_, u_, step.time);
-    L_ = std::max({L_, u_.cwiseAbs().maxCoeff(), loads.colwise().norm().maxCoeff() * over(bodies_.stiffness)});
-    const auto held = supports_at(scene_, step.time);
-    const Field inner = bodies_.forces - loads;
-    advance(part(increment, "contacts"), inner - taken(held, inner), step);
-    Field pushed = Field::Zero(3, u_.cols());
-    rounded_ = Eigen::VectorXd::Zero(u_.cols());
-    for (auto& contact : contacts_) {
-      Field forces = Field::Zero(3, u_.cols());
+    const Field before = std::exchange(u, vectors(given_u, scene.dimension, u.cols(), "displacement"));
+    bodies.deform(scene, u);
+    note(step, elements, bodies.inverted, "of a body");
+    const Field loads = load_forces(scene, u, step.time);
+    L_ = std::max({L_, u.cwiseAbs().maxCoeff(), loads.colwise().norm().maxCoeff() * over(bodies.stiffness)});
+    const auto supports = supports_at(scene, step.time);
+    const Field inner = bodies.forces - loads;
+    advance(part(increment, "contacts"), inner - taken(supports, inner), step);
+    Field pushed = Field::Zero(3, u.cols());
+    rounded_ = Eigen::VectorXd::Zero(u.cols());
+    for (auto& contact : contacts) {
+      Field forces = Field::Zero(3, u.cols());
       for (auto& [node, touch] : contact.touches) {
         check_place(contact, touch, step);
         step.tractions[contact.name][node] = {touch.pressure(), touch.friction().dot(touch.e())};
@@ -146,13 +140,13 @@ class Judge {
       measure_moment(contact, forces);
       pushed += forces;
     }
-    F_ = std::max({F_, bodies_.largest, loads.colwise().norm().maxCoeff(), pushed.colwise().norm().maxCoeff(),
-                   rounding * bodies_.stiffness * L_});
-    const Field supported = taken(held, inner - pushed);
-    check_nodes(held, inner - pushed - supported, step);
-    check_balance(loads + supported, pushed, step);
-    check_energy(loads + supported, pushed, u_ - before, step);
-    check_responses({scene_, u_, bodies_, contacts_, supported}, given, step);
+    F_ = std::max({F_, bodies.largest, loads.colwise().norm().maxCoeff(), pushed.colwise().norm().maxCoeff(),
+                   rounding * bodies.stiffness * L_});
+    held = taken(supports, inner - pushed);
+    check_nodes(supports, inner - pushed - held, step);
+    check_balance(loads + held, pushed, step);
+    check_energy(loads + held, pushed, u - before, step);
+    check_responses(given, step);
     check_flow(part(increment, "plastic_strain"), step);
     return step;
   }
@@ -162,18 +156,18 @@ class Judge {
 
  private:
   std::string at(int node) const {
-    if (node < 0 || node >= u_.cols()) throw BadFile(fmt::format("the mesh has no node {}", node));
-    return fmt::format("node {}, ({:.6g}, {:.6g}) at the start", node, scene_.points(0, node), scene_.points(1, node));
+    if (node < 0 || node >= u.cols()) throw BadFile(fmt::format("the mesh has no node {}", node));
+    return fmt::format("node {}, ({:.6g}, {:.6g}) at the start", node, scene.points(0, node), scene.points(1, node));
   }
   static double over(double scale) { return scale > 0 ? 1 / scale : 1; }
 
   /// Moves the contacts, with the tractions that are given, or with those that balance the forces `free` of nodes.
   void advance(const Json& given, const Field& free, Step& step) {
-    for (auto& contact : contacts_) {
-      contact.advance(u_, step.time);
+    for (auto& contact : contacts) {
+      contact.advance(u, step.time);
       const Json& of = part(given, contact.name);
       const Nodes nodes = of.empty() ? Nodes{} : of.at("nodes").get<Nodes>();
-      const Field tractions = vectors(part(of, "traction"), scene_.dimension, nodes.size(), "traction"),
+      const Field tractions = vectors(part(of, "traction"), scene.dimension, nodes.size(), "traction"),
                   compliances = vectors(part(of, "compliance"), 2, of.contains("compliance") * nodes.size(), "spring");
       for (std::size_t k = 0; k < nodes.size(); ++k) {
         Touch& touch = contact.touches[nodes[k]];  // (it faces nothing where the contact has no such node)
@@ -193,12 +187,12 @@ class Judge {
   /// The least force that counts at a place: a share of what its motion makes, and where coordinates are part of its
   /// gap, what their rounding does.
   double least_force(const Touch& touch) const {
-    return bodies_.stiffness * std::max(rounding * L_, rounded_gap(touch) / equilibrium.allowed);
+    return bodies.stiffness * std::max(rounding * L_, rounded_gap(touch) / equilibrium.allowed);
   }
   /// What the rounding of coordinates leaves of a gap; 0 where displacements alone are part of it.
   double rounded_gap(const Touch& touch) const {
-    const bool rounds = touch.faces && (scene_.finite || touch.gap != touch.normal.dot(touch.relative));
-    return rounds ? 4 * rounding_of_motion * scene_.points.col(touch.node).norm() : 0;
+    const bool rounds = touch.faces && (scene.finite || touch.gap != touch.normal.dot(touch.relative));
+    return rounds ? 4 * rounding_of_motion * scene.points.col(touch.node).norm() : 0;
   }
 
   /// What the springs of a penalty make of that: a state whose gaps are rounded balances no better. Springs are some
@@ -209,8 +203,8 @@ class Judge {
     double stiffness = 0;
     for (const double compliance : touch.compliance)
       if (compliance > 0 && touch.pressure() > 0)
-        stiffness += std::min(touch.area / compliance, stiffest * bodies_.stiffness);
-    return stiffness * (scene_.finite ? rounded_gap(touch) : 4 * rounding_of_motion * L_);  // (small: of motions alone)
+        stiffness += std::min(touch.area / compliance, stiffest * bodies.stiffness);
+    return stiffness * (scene.finite ? rounded_gap(touch) : 4 * rounding_of_motion * L_);  // (small: of motions alone)
   }
 
   /// Signorini's conditions of a place; then its friction, and its work.
@@ -227,7 +221,7 @@ class Judge {
     const Vec3 e = touch.e();
     touch.slid = past.slid + touch.slip.dot(e);
     Vec3 rubbed = past.friction();  // its component along the tangent is carried on
-    if (scene_.finite && scene_.dimension == 2) rubbed = std::copysign(rubbed.norm(), rubbed.dot(e)) * e;
+    if (scene.finite && scene.dimension == 2) rubbed = std::copysign(rubbed.norm(), rubbed.dot(e)) * e;
     check_friction(contact, touch, rubbed, where, step);
     add_work(touch, touch.area * touch.traction, past.area * (rubbed + past.pressure() * touch.normal));
   }
@@ -249,7 +243,7 @@ class Judge {
     contact.heat -= touch.area * s.dot(slid);
   }
 
-  Field arms() const { return scene_.places(u_).colwise() - scene_.points.rowwise().mean(); }
+  Field arms() const { return scene.places(u).colwise() - scene.points.rowwise().mean(); }
   double moment(const Field& of) const {
     const Mat3 m = arms() * of.transpose();
     return (m - m.transpose()).norm() / std::sqrt(2.0);
@@ -258,7 +252,7 @@ class Judge {
   /// Forces on two bodies act where each side is, so that they balance, and their moments only as far as sides meet.
   void measure_moment(const Contact& contact, const Field& forces) {
     const double all = forces.colwise().norm().sum(), left = moment(forces);
-    const bool is_of_two = !scene_.axisymmetric && forces.rowwise().sum().norm() <= equilibrium.allowed * all;
+    const bool is_of_two = !scene.axisymmetric && forces.rowwise().sum().norm() <= equilibrium.allowed * all;
     if (!is_of_two || !(left > noted * all * arms().colwise().norm().maxCoeff())) return;
     moments_left[contact.name] = std::max(moments_left[contact.name], left);
   }
@@ -279,7 +273,7 @@ class Judge {
   void check_nodes(const std::map<int, Held>& held, const Field& residual, Step& step) {
     for (const auto& [node, holds] : held)
       for (const auto& [direction, value] : holds)
-        note(step, supports, std::abs(direction.dot(u_.col(node)) - value) * over(L_), at(node));
+        note(step, supports, std::abs(direction.dot(u.col(node)) - value) * over(L_), at(node));
     Eigen::Index worst = 0;
     const double off = residual.colwise().norm().maxCoeff(&worst);
     note(step, equilibrium, residual.allFinite() ? off * over(F_) : infinity, at(static_cast<int>(worst)),
@@ -289,13 +283,13 @@ class Judge {
   void check_balance(const Field& outer, const Field& contact, Step& step) {
     const Field forces_of = outer + contact;
     Vec3 sum = forces_of.rowwise().sum();
-    if (scene_.axisymmetric) sum[0] = 0;
-    const double all = F_ + forces_of.colwise().norm().sum(), many = std::sqrt(static_cast<double>(u_.cols()));
+    if (scene.axisymmetric) sum[0] = 0;
+    const double all = F_ + forces_of.colwise().norm().sum(), many = std::sqrt(static_cast<double>(u.cols()));
     const std::string what = "of loads, supports and contacts";
     const double rounded = rounded_.sum() * over(all);  // (errors of springs, which all may have one sign)
     note(step, forces, sum.norm() * over(all), what, many * forces.allowed + rounded);
-    const bool springs = std::ranges::any_of(scene_.bodies, &Body::spring);
-    if (scene_.axisymmetric || (scene_.finite && springs)) return;  // (a spring at its anchor has a moment of its own)
+    const bool springs = std::ranges::any_of(scene.bodies, &Body::spring);
+    if (scene.axisymmetric || (scene.finite && springs)) return;  // (a spring at its anchor has a moment of its own)
     note(step, moments, moment(forces_of) * over(all * arms().colwise().norm().maxCoeff()), what,
          many * moments.allowed + rounded);
   }
@@ -309,19 +303,19 @@ class Judge {
     outer_ = outer;
     contact_ = contact;
     work_ += done;
-    spent_ += bodies_.plastic_work;
-    size_ += std::abs(done) + bodies_.plastic_work;
-    const double scale = std::max({size_, bodies_.energy, equilibrium.allowed * bodies_.stiffness * L_ * L_});
-    note(step, energy, std::abs(work_ - bodies_.energy - spent_) * over(scale),
-         fmt::format("work {:.6g}, stored {:.6g}, dissipated {:.6g}", work_, bodies_.energy, spent_),
+    spent_ += bodies.plastic_work;
+    size_ += std::abs(done) + bodies.plastic_work;
+    const double scale = std::max({size_, bodies.energy, equilibrium.allowed * bodies.stiffness * L_ * L_});
+    note(step, energy, std::abs(work_ - bodies.energy - spent_) * over(scale),
+         fmt::format("work {:.6g}, stored {:.6g}, dissipated {:.6g}", work_, bodies.energy, spent_),
          std::min(1.0, slack_ * over(scale) + energy.allowed));
   }
 
   /// Measures the responses, and compares them with those that are `given`.
-  void check_responses(const State& state, const Json& given, Step& step) {
-    for (const auto& [name, what] : part(scene_.json, "responses").items()) {
+  void check_responses(const Json& given, Step& step) {
+    for (const auto& [name, what] : part(scene.json, "responses").items()) {
       const std::string kind = what.begin().key();
-      const double again = measure(state, what).value_or(NAN);
+      const double again = measure(*this, what).value_or(NAN);
       if (std::isnan(again)) unmeasured.insert(name);
       if (!std::isnan(again)) step.responses[name] = again;
       std::map<std::string, double> natural{
@@ -339,24 +333,21 @@ class Judge {
 
   /// Plastic strains that are given, a mean of each element.
   void check_flow(const Json& given, Step& step) {
-    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-      const Json& means = part(given, scene_.bodies[b].name);
-      auto& particles = bodies_.particles[b];
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      const Json& means = part(given, scene.bodies[b].name);
+      const auto& points = bodies.points[b];
       double largest = least_strain;
-      for (const auto& particle : particles | std::views::join) largest = std::max(largest, particle.equivalent);
+      for (const auto& point : points | std::views::join) largest = std::max(largest, point.equivalent);
       for (std::size_t e = 0; e < means.size(); ++e) {
         Vec2 sum(0, 0);
-        for (const auto& particle : particles.at(e)) sum += particle.volume * Vec2(particle.equivalent, 1);
+        for (const auto& point : points.at(e)) sum += point.volume * Vec2(point.equivalent, 1);
         note(step, flow, std::abs(means[e].get<double>() - sum[0] / sum[1]) / largest,
-             fmt::format("{}, element {}", scene_.bodies[b].name, e));
+             fmt::format("{}, element {}", scene.bodies[b].name, e));
       }
     }
   }
 
-  Scene scene_;
-  std::vector<Contact> contacts_;
-  Bodies bodies_;
-  Field u_, outer_, contact_;                           ///< displacements, forces from outside and of contact
+  Field outer_ = u, contact_ = u;                       ///< forces from outside and of contact
   Eigen::VectorXd rounded_;                             ///< of nodes: what springs make of rounded gaps
   std::map<std::string, double> largest_;               ///< of kinds of responses
   double F_ = 0, L_ = 0, T_ = 0;                        ///< largest force, motion, traction

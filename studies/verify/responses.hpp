@@ -1,15 +1,28 @@
-#include <Eigen/Geometry>
-#include <Eigen/LU>
+/// Responses, measured again (docs/scene.md, Responses).
+#pragma once
 
-#include "studies/verify/state.hpp"
+#include "studies/verify/contacts.hpp"
 
 namespace stickslip::verify {
-namespace {
+
+/// What is checked, and what responses are measured on.
+struct State {
+  Scene scene;
+  Field u;  ///< displacements
+  Bodies bodies;
+  std::vector<Contact> contacts;
+  Field held;  ///< forces of the supports
+  State(const Json& given, const Json& mesh)
+      : scene(given, mesh), u(Field::Zero(3, scene.points.cols())), bodies(scene), held(u) {
+    for (const auto& [name, sides] : part(mesh, "contacts").items()) contacts.emplace_back(scene, name, sides);
+  }
+  Vec3 position(int node) const { return scene.points.col(node) + (scene.finite ? 1.0 : 0.0) * u.col(node); }
+};
 
 /// Pairs of a sample and its weight in the mean.
 using Samples = std::vector<std::array<double, 2>>;
 
-std::optional<double> taken(const Samples& samples, const std::string& take) {
+inline std::optional<double> taken(const Samples& samples, const std::string& take) {
   Vec2 sum(0, 0);
   for (const auto& [sample, weight] : samples) sum += weight * Vec2(sample, 1);
   if (take == "sum") return sum[0];
@@ -19,13 +32,13 @@ std::optional<double> taken(const Samples& samples, const std::string& take) {
 }
 
 /// A vector along an axis; a force at a place also about a point.
-double part_of(const Json& how, const Vec3& v, const Vec3& at = Vec3::Zero()) {
+inline double part_of(const Json& how, const Vec3& v, const Vec3& at = Vec3::Zero()) {
   const std::string component = how.at("component");
   return component == "moment" ? (at - vec3(how.at("about"))).cross(v)[2] : v[component[0] - 'x'];
 }
 
 /// Displacement at a place of the start, in the element that holds it.
-std::optional<Vec3> displacement_at(const State& state, const Json& how) {
+inline std::optional<Vec3> displacement_at(const State& state, const Json& how) {
   const Vec3 X = vec3(how.at("at"));
   for (const auto& body : state.scene.bodies)
     for (const auto& element : body.elements) {
@@ -36,27 +49,28 @@ std::optional<Vec3> displacement_at(const State& state, const Json& how) {
       const double distance = off.minCoeff(&nearest), size = off.maxCoeff();
       if (distance <= at_end * size) return Vec3(state.u.col(element[nearest]));
       if (!body.solid() || distance > (nodes.colwise() - nodes.col(0)).colwise().norm().maxCoeff()) continue;
-      Vec3 r = natural_nodes(body).rowwise().mean();
+      Vec3 r = reference(body.element).nodes.rowwise().mean();
       for (int k = 0; k < 20; ++k) {
-        const Shape at = shape(body, r);
+        const Shape at = shape(body.element, r);
         Mat3 slope = nodes * at.gradient;
         if (!body.in_space()) slope(2, 2) = 1;
         r += slope.inverse() * (X - nodes * at.value);
       }
-      const double past = body.element[0] == 'T' ? std::max(-r.minCoeff(), r.sum() - 1) : r.cwiseAbs().maxCoeff() - 1;
-      if (past <= 1e-6) return Vec3(state.u(Eigen::all, element) * shape(body, r).value);
+      const bool simplex = body.element[0] == 'T';
+      const double past = std::max(-r.minCoeff(), (simplex ? r.sum() : r.maxCoeff()) - 1);
+      if (past <= (simplex ? 1e-6 : 5e-7)) return Vec3(state.u(Eigen::all, element) * shape(body.element, r).value);
     }
   return std::nullopt;
 }
 
 /// a = 2 sqrt(sum f x^2 / sum f) of nodal forces f, about a point or their centre; of revolution sqrt(5/2 ...). None
 /// where a plane of symmetry may be what it is measured from: where supports hold nodes of the contact.
-std::optional<double> half_width(const State& state, const std::vector<Touch>& touches, const Json& how) {
+inline std::optional<double> half_width(const State& state, const std::vector<Touch>& touches, const Json& how) {
   const bool rings = state.scene.axisymmetric, has_center = how.contains("about");
   Field x(3, touches.size()), normals = x;
   Eigen::VectorXd f(touches.size());
   for (std::size_t k = 0; k < touches.size(); ++k) {
-    x.col(k) = state.place(touches[k].node);
+    x.col(k) = state.position(touches[k].node);
     normals.col(k) = touches[k].normal;
     f[k] = touches[k].area * touches[k].pressure();
   }
@@ -65,26 +79,25 @@ std::optional<double> half_width(const State& state, const std::vector<Touch>& t
     for (const auto& touch : touches)
       if (!rings && !has_center && state.scene.side(support.at("on")).has(touch.node)) return std::nullopt;
   const Vec3 normal = (normals * f).normalized(), center = has_center ? vec3(how["about"]) : Vec3(x * f / f.sum());
-  const Vec3 along = rings ? Vec3(1, 0, 0) : Vec3(-normal[1], normal[0], 0), middle = rings ? Vec3(0, 0, 0) : center;
+  const Vec3 along = rings ? Vec3(1, 0, 0) : Vec3(-right_of(normal)), middle = rings ? Vec3(0, 0, 0) : center;
   return std::sqrt((rings ? 2.5 : 4) * f.dot(((x.colwise() - middle).transpose() * along).cwiseAbs2()) / f.sum());
 }
 
 /// What a place of contact adds to a response; none: it does not count.
-std::optional<double> at_place(const State& state, const Contact& contact, const Touch& touch, const std::string& kind,
-                               const Json& how) {
+inline std::optional<double> at_place(const State& state, const Contact& contact, const Touch& touch,
+                                      const std::string& kind, const Json& how) {
   if (kind == "gap") return touch.gap;
   if (kind == "contact_pressure") return touch.pressure();
   const bool slides = contact.given.contains("friction") && !state.scene.on_axis(touch.node);
   if (kind == "slip") return slides ? std::optional(touch.slid) : std::nullopt;
   if (kind != "contact_force") return std::nullopt;
   Vec3 x = Vec3::Zero();  // the force is shared by the slave's nodes
-  for (const auto& [node, weight] : touch.slave) x += weight * state.place(node);
+  for (const auto& [node, weight] : touch.slave) x += weight * state.position(node);
   return touch.area * (how.at("component") == "normal" ? touch.pressure() : part_of(how, touch.traction, x));
 }
 
-}  // namespace
-
-std::optional<double> measure(const State& state, const Json& response) {
+/// The value of a response; none of those that are not measured again.
+inline std::optional<double> measure(const State& state, const Json& response) {
   const std::string kind = response.begin().key();
   const Json& how = response.begin().value();
   const bool force = kind == "contact_force" || kind == "reaction", sum = force || kind == "dissipation";
@@ -109,11 +122,11 @@ std::optional<double> measure(const State& state, const Json& response) {
     if (kind == "contact_half_width") return half_width(state, touches, how);
   } else if (kind == "plastic_strain") {
     for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
-      for (const auto& particle : state.bodies.particles[b] | std::views::join)
-        if (state.scene.bodies[b].name == how.at("on")) samples.push_back({particle.equivalent, particle.volume});
+      for (const auto& point : state.bodies.points[b] | std::views::join)
+        if (state.scene.bodies[b].name == how.at("on")) samples.push_back({point.equivalent, point.volume});
   } else {
     for (const int node : state.scene.side(how.at("on")).nodes)
-      samples.push_back({part_of(how, (force ? state.held : state.u).col(node), state.place(node)), 1});
+      samples.push_back({part_of(how, (force ? state.held : state.u).col(node), state.position(node)), 1});
   }
   return taken(samples, sum ? "sum" : how.value("take", "mean"));
 }
