@@ -7,6 +7,7 @@
 ///              m_j = 1/A_j int psi_j dy/dS dA,   Z_j = 1/A_j int psi_j (S(y) + S_s) dA
 #pragma once
 
+#include "studies/verify/faces.hpp"
 #include "studies/verify/masters.hpp"
 #include "studies/verify/solids.hpp"
 
@@ -28,6 +29,7 @@ class Contact {
         master_(scene, given, sides.at("slave"), sides.at("master"), segment),
         facets_(body_.in_space() ? Facets{} : facets_of(side_)),
         areas_(areas_of(scene, body_, side_)) {
+    if (body_.in_space() && !master_.rigid()) faces_.emplace(scene, scene.side(sides.at("master")));
     for (auto& [node, area] : areas_)
       if (side_.edges.empty() && body_.element == "bar") area = body_.area();
     std::map<int, Vec3> before;
@@ -56,7 +58,8 @@ class Contact {
     last = std::exchange(touches, {});
     for (const auto& [node, area] : areas_) {
       Touch& touch = touches[node];
-      touch = segment ? on_pieces(node, x) : Touch{master_.foot(seeker(node, x)), node, area};
+      const Seeker point = seeker(node, x);
+      touch = segment ? on_pieces(node, x) : Touch{faces_ ? faces_->foot(point) : master_.foot(point), node, area};
       if (!segment) touch.slave.emplace_back(touch.weights.emplace_back(node, 1));
       move(touch, last[node], u, time);
     }
@@ -96,6 +99,11 @@ class Contact {
       if (body_.solid()) seeker.outward += right_of(facet.chord(x));
       seeker.size += (facet.chord(x).norm() - seeker.size) / ++count;
     }
+    for (const auto& face : side_.edges)
+      if (faces_ && std::ranges::count(face, node) > 0) {
+        const std::size_t last = face.size() - 1;  // (half of what diagonals, or two edges of a triangle, span)
+        seeker.outward += (x.col(face[last - 1]) - x.col(face[0])).cross(x.col(face[last]) - x.col(face[1])) / 2;
+      }
     return seeker;
   }
 
@@ -249,9 +257,12 @@ class Contact {
     } else {
       touch.slip = touch.y - (on_curve ? master_.position(last.place) : last.y);
     }
-    if (scene_.finite) {
-      touch.normal = motion.turn(time) * touch.normal;
-      touch.slip = motion.turn(time) * touch.slip;
+    if (scene_.finite) {  // from the last normal to this one the shortest way, as seen from the master
+      const Mat3 now = motion.turn(time), before = motion.turn(last_time_);
+      touch.turned = now * Eigen::Quaterniond::FromTwoVectors(before.transpose() * last.normal, touch.normal).matrix() *
+                     before.transpose();
+      touch.normal = now * touch.normal;
+      touch.slip = now * touch.slip;
     }
     touch.slip -= touch.normal.dot(touch.slip) * touch.normal;
     if (touch.faces) touch.gap += given.value("offset", 0.0);
@@ -262,6 +273,7 @@ class Contact {
   const Body& body_;
   Side side_;
   Master master_;
+  std::optional<Faces> faces_;  ///< of a master in space that deforms
   Facets facets_;
   std::map<int, double> areas_;
   std::set<int> corners_;  ///< where the slave side turns by more than 60 degrees

@@ -63,6 +63,7 @@ struct Touch : Foot {
   double area = 0;                                       ///< of the start, on which its traction acts
   Vec3 slip = Vec3::Zero();                              ///< of this increment, across the normal
   bool slip_known = false;                               ///< false: it faced nothing before
+  Mat3 turned = Mat3::Identity();                        ///< of directions across the normal in this increment
   double opening = 0;                                    ///< of the gap in this increment
   Vec3 carried = Vec3::Zero();                           ///< motion of an obstacle's surface there in this increment
   Vec3 relative = Vec3::Zero(), tangent = Vec3::Zero();  ///< w of small strain; m of segments
@@ -89,7 +90,7 @@ class Master {
     const std::string kind = surface.is_object() ? surface.value("smooth", "catmull_rom") : surface.get<std::string>();
     smooth_ = kind == "faceted" ? 0 : kind == "b_spline" ? 2 : 1;
     frozen_ = !scene.finite && smooth_ == 0 && !contact.contains("between") && !itself_;
-    if (!rigid()) facets = facets_of(scene.side(master));
+    if (!rigid() && scene.dimension == 2) facets = facets_of(scene.side(master));
     const Json points = part(part(obstacle, "polyline"), "points");  // the solid is on its right
     at.resize(3, std::ssize(points));
     for (int v = 0; v < std::ssize(points); ++v) at.col(v) = vec3(points[v]);

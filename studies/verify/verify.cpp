@@ -220,8 +220,7 @@ class Judge : State {
     const Touch past = last.faces ? last : Touch{};
     const Vec3 e = touch.e();
     touch.slid = past.slid + touch.slip.dot(e);
-    Vec3 rubbed = past.friction();  // its component along the tangent is carried on
-    if (scene.finite && scene.dimension == 2) rubbed = std::copysign(rubbed.norm(), rubbed.dot(e)) * e;
+    const Vec3 rubbed = touch.turned * past.friction();
     check_friction(contact, touch, rubbed, where, step);
     add_work(touch, touch.area * touch.traction, past.area * (rubbed + past.pressure() * touch.normal));
   }

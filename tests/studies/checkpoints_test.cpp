@@ -31,15 +31,17 @@ json long_scene(const std::string& name, double megabytes) {
 struct Done {
   Simulation simulation;
   CaseResult result;
-  explicit Done(const json& document, const std::string& name)
-      : simulation{cases::read(document, scene_folder / (name + ".json")), nullptr} {
+  std::string name;
+  explicit Done(const json& document, const std::string& scene)
+      : simulation{cases::read(document, scene_folder / (scene + ".json")), nullptr}, name(scene) {
     simulation.problem = std::make_shared<const Problem>(simulation.input.scene);
     result = simulate(simulation);
   }
   long count(const char* name) const { return cost_json(result)["counts"][name]; }
   /// Names and contents of the files of fields.
   std::map<std::string, std::string> fields() const {
-    const fs::path directory = fs::path(testing::TempDir()) / "fields_of_let_go";
+    // (by its name: tests of other scenes run beside it)
+    const fs::path directory = fs::path(testing::TempDir()) / ("fields_of_let_go_" + name);
     fs::remove_all(directory);
     fs::create_directories(directory);
     write_result(directory, simulation, result);

@@ -68,7 +68,8 @@ double sampled_distance(const Surface& s, const Vec<double, 3>& x, int grid) {
     for (int i = 0; i <= grid; ++i)
       for (int j = 0; j <= (place.corners == 3 ? grid - i : grid); ++j) {
         place.at = {double(i) / grid, double(j) / grid};
-        least = std::min(least, (x - position(s, place)).norm());
+        const double distance = (x - position(s, place)).norm();
+        if (!(distance >= least)) least = distance;
       }
   }
   return least;
