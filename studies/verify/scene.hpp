@@ -6,36 +6,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <ranges>
 #include <set>
 #include <sstream>
-#include <stdexcept>
-#include <string>
-#include <vector>
+
+#include "studies/verify/verify.hpp"
 
 namespace stickslip::verify {
 
-using Json = nlohmann::json;
-using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Nodes = std::vector<int>;
 using Field = Eigen::Matrix3Xd;                       ///< a vector a node
 using Weights = std::vector<std::pair<int, double>>;  ///< of nodes
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The time before a run, when nothing has moved yet: a motion that is there at the time 0 is made in the first step.
 constexpr double at_rest = -infinity;
-
-/// A file that cannot be read, or does not fit the scene.
-struct BadFile : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 inline Vec3 right_of(const Vec3& tau) { return {tau[1], -tau[0], 0}; }  ///< in a plane, out of a solid on the left
 

@@ -2,9 +2,24 @@
 /// shares nothing with the solver (docs/verify.md). A solution of another program gets the same certificate.
 #pragma once
 
-#include "studies/verify/scene.hpp"
+#include <Eigen/Core>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace stickslip::verify {
+
+using Json = nlohmann::json;
+using Vec2 = Eigen::Vector2d;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A file that cannot be read, or does not fit the scene.
+struct BadFile : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// The worst violation of a law at one time, over what it is measured by.
 struct Finding {
