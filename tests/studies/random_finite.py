@@ -265,7 +265,10 @@ def solid(draw):
     tool = {"plane": {"plane": {"point": [0, 0, 0], "normal": [draw.uniform(-0.05, 0.05), draw.uniform(-0.05, 0.05), 1]}},
             "sphere": {"sphere": {"center": [0, 0, -radius], "radius": radius}},
             "cylinder": {"cylinder": {"point": [0, 0, -radius], "axis": [draw.uniform(-1, 1), 1, 0], "radius": radius}}}
-    contact = dict(slave=sole, master="tool", **(draw.friction() if kind == "plane" else {}))
+    contact = dict(slave=sole, master="tool", **draw.friction())
+    if draw.choice([True, False]):
+        tool[kind]["rotate"] = {"center": [0, 0, -radius], "axis": [draw.uniform(-0.2, 0.2), draw.uniform(-0.2, 0.2), 1],
+                                "angle": draw.there_and_back(draw.uniform(-5, 5))}
     press = draw.uniform(0.02, 0.1) * height
     support = {"on": held, "move": {"x": draw.there_and_back(draw.uniform(-0.5, 0.5)),
                                     "y": draw.there_and_back(draw.uniform(-0.5, 0.5)), "z": [[0, 0], [1, -press]]},
@@ -275,7 +278,30 @@ def solid(draw):
             "supports": [support], "press_on": held}
 
 
-CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, slide, ironing, stack, rings, disks, tube, solid)}
+def pile(draw):
+    """Small strain: a block of space on another whose nodes do not match, pressed, dragged and twisted."""
+    def box(low, high):
+        material = draw.choice([{"linear_elastic": {"E": draw.uniform(100, 2000), "nu": draw.uniform(0, 0.4)}},
+                                {"j2_plastic": {"E": draw.uniform(500, 2000), "nu": 0.3, "yield": draw.uniform(2, 20),
+                                                "hardening": 50}}])
+        element = "H8_mean_dilatation" if "j2_plastic" in material else draw.choice(["H8", "T4"])
+        cells = [draw.whole(2, 5), draw.whole(2, 5), draw.whole(1, 3)]
+        return {"mesh": {"box": {"min": low, "max": high, "cells": cells}}, "material": material, "element": element}
+    upper = box([draw.uniform(0.02, 0.4), draw.uniform(0.02, 0.4), 1], [draw.uniform(0.9, 1.4), draw.uniform(0.9, 1.4), 1.6])
+    lower = box([0, 0, 0], [1.5, 1.5, 1])
+    press = draw.uniform(0.002, 0.02)
+    supports = [{"on": "lower.bottom", "move": {"x": 0, "y": 0, "z": 0}},
+                {"on": "upper.top", "move": {"x": draw.there_and_back(draw.uniform(-0.02, 0.02)),
+                                             "y": draw.there_and_back(draw.uniform(-0.02, 0.02)),
+                                             "z": [[0, 0], [1, -press]]},
+                 "rotate": {"center": [0.7, 0.7, 1.6], "axis": [draw.uniform(-0.1, 0.1), draw.uniform(-0.1, 0.1), 1],
+                            "angle": draw.there_and_back(draw.uniform(-1, 1))}}]
+    return {"space": "solid", "strain": "small", "bodies": {"upper": upper, "lower": lower},
+            "contacts": {"c": dict(slave="upper.bottom", master="lower.top", **draw.friction())}, "supports": supports,
+            "press_on": "upper.top"}
+
+
+CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, slide, ironing, stack, rings, disks, tube, solid, pile)}
 
 
 def scene_of(kind, number, surface):
