@@ -1,6 +1,6 @@
 /// From the description of a mesh to its topology (numbers play no part) and its coordinates (in any scalar, so that
 /// the derivative with respect to every dimension is exact). One file per family: box, quad, ring, disk, half_disk,
-/// extruded, chain. It holds the description for the scene, as the user wrote it, which says its keys
+/// half_ball, extruded, chain. It holds the description for the scene, as the user wrote it, which says its keys
 /// (core/algebra/described.hpp), `filling` and cell_count(), the number of its quadrilaterals or bars; fault, topology
 /// and coordinates; and `bend` if it has curved sides: what moves the middles of quadratic elements onto them. What a
 /// description lacks does not compile.
@@ -13,6 +13,7 @@
 #include "core/mesh/chain.hpp"
 #include "core/mesh/disk.hpp"
 #include "core/mesh/extruded.hpp"
+#include "core/mesh/half_ball.hpp"
 #include "core/mesh/half_disk.hpp"
 #include "core/mesh/imported.hpp"
 #include "core/mesh/mesh.hpp"
@@ -23,8 +24,8 @@
 namespace stickslip {
 
 /// In the order in which messages and the schema name them.
-using MeshDescription = std::variant<BoxMesh, QuadMesh, RingMesh, DiskMesh, HalfDiskMesh, ExtrudedMesh, PointMesh,
-                                     LineMesh, ArcMesh, ImportedMesh>;
+using MeshDescription = std::variant<BoxMesh, QuadMesh, RingMesh, DiskMesh, HalfDiskMesh, HalfBallMesh, ExtrudedMesh,
+                                     PointMesh, LineMesh, ArcMesh, ImportedMesh>;
 
 /// What the mesh is made of.
 Filling filling_of(const MeshDescription&);

@@ -5,11 +5,6 @@
 #include "core/mesh/sides.hpp"
 
 namespace stickslip {
-namespace {
-
-/// A cell of space, as one hexahedron, or as six tetrahedra around its diagonal from corner 0 to corner 6. `mirrored`:
-/// along which directions the cell is turned over before. Neighbours are turned over in turn, so the diagonals of a face
-/// that they share agree, and no direction is preferred.
 void append_block(Mesh& mesh, const std::array<int, 8>& n, const std::array<bool, 3>& mirrored) {
   if (mesh.shape == ElementShape::hex8) {
     mesh.connectivity.insert(mesh.connectivity.end(), n.begin(), n.end());
@@ -34,8 +29,6 @@ void append_block(Mesh& mesh, const std::array<int, 8>& n, const std::array<bool
   }
 }
 
-}  // namespace
-
 Mesh grid(const std::array<int, 3>& cells, const std::string& element) {
   const auto [nx, ny, nz] = cells;
   const auto node = [&, nx = nx, ny = ny](int i, int j, int k) { return (k * (ny + 1) + j) * (nx + 1) + i; };
@@ -51,21 +44,13 @@ Mesh grid(const std::array<int, 3>& cells, const std::string& element) {
                       node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)},
                      {i % 2 == 1, j % 2 == 1, k % 2 == 1});
   const Side all = boundary_of(mesh);
-  const auto side = [&](auto&& holds) {
-    Side of;
-    for (const int n : all.nodes)
-      if (holds(n)) of.nodes.push_back(n);
-    for (const auto& facet : all.facets)
-      if (std::all_of(facet.begin(), facet.end(), holds)) of.facets.push_back(facet);
-    return of;
-  };
   const int row = nx + 1, layer = row * (ny + 1);
-  mesh.sides = {{"left", side([&](int n) { return n % row == 0; })},
-                {"right", side([&, nx = nx](int n) { return n % row == nx; })},
-                {"front", side([&](int n) { return n % layer / row == 0; })},
-                {"back", side([&, ny = ny](int n) { return n % layer / row == ny; })},
-                {"bottom", side([&](int n) { return n / layer == 0; })},
-                {"top", side([&, nz = nz](int n) { return n / layer == nz; })}};
+  mesh.sides = {{"left", part_of(all, [&](int n) { return n % row == 0; })},
+                {"right", part_of(all, [&, nx = nx](int n) { return n % row == nx; })},
+                {"front", part_of(all, [&](int n) { return n % layer / row == 0; })},
+                {"back", part_of(all, [&, ny = ny](int n) { return n % layer / row == ny; })},
+                {"bottom", part_of(all, [&](int n) { return n / layer == 0; })},
+                {"top", part_of(all, [&, nz = nz](int n) { return n / layer == nz; })}};
   return mesh;
 }
 

@@ -67,10 +67,23 @@ struct HalfDiskLayout {
   int ring(int l, int j) const;
 };
 
+/// The block's inner corner, across the axis and along it from the pole, of unit radius. `on_arc`: where its edge begins,
+/// at the angle `opening` from the pole; `height`: of the block along the axis.
+template <class T>
+Vec<T, 2> inner_corner(const Vec<T, 2>& on_arc, const T& opening, const T& height) {
+  using std::cos, std::pow, std::sin;
+  // A little less than its height away from the arc, leaning to the axis. The numbers 0.2, 0.8, 1.1, 0.4 are those that
+  // keep the worst corner of all cells best over grades 1 to 100 and counts 1:2 to 2:1.
+  const T lean = T(0.2) + opening * T(0.8), reach = height * (T(1.1) - opening * T(0.4));
+  // a block much higher than wide leans no further than its width allows: a smooth minimum
+  const T wanted = reach * sin(lean), inwards = wanted / pow(T(1.0) + pow(wanted / (on_arc[0] * T(0.6)), 8.0), 0.125);
+  return on_arc + Vec<T, 2>(-inwards, reach * cos(lean));
+}
+
 /// Coordinates, 2 x nodes.
 template <class T>
 Points<T> coordinates(const HalfDiskMesh& disk, const Numbers<T>& numbers, int) {
-  using std::cos, std::pow, std::sin;
+  using std::sin;
   using Position = Vec<T, 2>;  // across the axis, and along it from the pole to the centre; unit radius
   const HalfDiskLayout layout(disk);
   const int width = layout.width, height = layout.height, quarter = layout.quarter();
@@ -82,14 +95,7 @@ Points<T> coordinates(const HalfDiskMesh& disk, const Numbers<T>& numbers, int) 
   };
 
   const Position on_arc = arc(width), on_axis(T(0.0), axis[height]), end(T(1.0), T(1.0));
-  // The block's inner corner: a little less than its height away from the arc, leaning to the axis. The numbers
-  // 0.2, 0.8, 1.1, 0.4 are those that keep the worst corner of all cells best over grades 1 to 100 and counts 1:2 to
-  // 2:1.
-  const T opening = right_angle * along[width], lean = T(0.2) + opening * T(0.8);
-  const T reach = axis[height] * (T(1.1) - opening * T(0.4));
-  // a block much higher than wide leans no further than its width allows: a smooth minimum
-  const T wanted = reach * sin(lean), inwards = wanted / pow(T(1.0) + pow(wanted / (on_arc[0] * T(0.6)), 8.0), 0.125);
-  const Position corner = on_arc + Position(-inwards, reach * cos(lean));
+  const Position corner = inner_corner<T>(on_arc, right_angle * along[width], axis[height]);
 
   Points<T> points(2, layout.node_count());
   const T radius = numbers(disk.radius), up(disk.facing == HalfDiskMesh::Facing::up ? -1.0 : 1.0);

@@ -1,7 +1,10 @@
 /// Body of an imported mesh: topology and coordinates as read.
 #pragma once
 
+#include <array>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "core/algebra/number.hpp"
 #include "core/mesh/mesh.hpp"
@@ -13,6 +16,7 @@ struct ImportedMesh {
   std::string file, body;
   Mesh mesh;
   Points<double> points;
+  std::map<std::string, std::vector<std::array<int, 2>>> curves = {};  ///< in space: edges of the sides that are curves
 };
 
 /// What is wrong with the description, or "".

@@ -1,111 +1,17 @@
 #include "core/mesh/msh_file.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <string_view>
-#include <type_traits>
 #include <unordered_map>
 
-#include "core/mesh/decimal.hpp"
+#include "core/mesh/msh_tokens.hpp"
 
 namespace stickslip {
 namespace {
-
-struct Fault {
-  std::size_t offset;
-  std::string message;
-};
-
-struct Token {
-  std::size_t offset;
-  std::string_view text;
-};
-
-/// Words of the text in order; a fault of form ends the reading by an exception that parse_msh catches.
-class Tokens {
- public:
-  explicit Tokens(std::string_view text) : text_(text) {}
-
-  bool at_end() { return offset() == text_.size(); }
-
-  /// Where the next word begins.
-  std::size_t offset() {
-    while (here_ < text_.size() && is_space(text_[here_])) ++here_;
-    return here_;
-  }
-
-  Token next(const std::string& what) {
-    if (at_end()) throw Fault{text_.size(), "the file ends where " + what + " should stand: it is truncated"};
-    const std::size_t start = here_;
-    while (here_ < text_.size() && !is_space(text_[here_])) ++here_;
-    return {start, text_.substr(start, here_ - start)};
-  }
-
-  long long integer(const std::string& what) { return number<long long>(what, "a whole number"); }
-
-  double real(const std::string& what) {
-    const std::size_t start = offset();
-    const double x = number<double>(what, "a number");
-    if (!std::isfinite(x)) throw Fault{start, what + " is not finite"};
-    return x;
-  }
-
-  long long count(const std::string& what) {
-    const std::size_t start = offset();
-    const long long n = integer(what);
-    if (n < 0) throw Fault{start, what + " is negative"};
-    return n;
-  }
-
-  std::string quoted(const std::string& what) {
-    if (at_end() || text_[here_] != '"') throw Fault{here_, what + " should stand here, in double quotes"};
-    const std::size_t end = text_.find('"', here_ + 1);
-    if (end == std::string_view::npos) throw Fault{here_, "the quote of " + what + " is not closed"};
-    std::string name(text_.substr(here_ + 1, end - here_ - 1));
-    here_ = end + 1;
-    return name;
-  }
-
-  /// The word must be `keyword`, the end of a section whose header announced what has been read.
-  void close(const std::string& keyword, const std::string& announced) {
-    const Token token = next(keyword);
-    if (token.text != keyword)
-      throw Fault{token.offset,
-                  keyword + " should stand here, after " + announced + " announced; found " + shown(token)};
-  }
-
-  void skip_section(const std::string& keyword) {
-    while (next(keyword).text != keyword) {
-    }
-  }
-
-  static std::string shown(const Token& token) { return "\"" + std::string(token.text.substr(0, 40)) + "\""; }
-
- private:
-  static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-  template <class Value>
-  Value number(const std::string& what, const char* kind) {
-    const Token token = next(what);
-    if constexpr (std::is_same_v<Value, double>) {
-      if (const auto value = decimal(token.text)) return *value;
-    } else {
-      Value value{};
-      const auto [end, error] = std::from_chars(token.text.data(), token.text.data() + token.text.size(), value);
-      if (error == std::errc() && end == token.text.data() + token.text.size()) return value;
-    }
-    const char* hint = token.text.front() == '$' ? ": the section has fewer entries than announced" : "";
-    throw Fault{token.offset, what + " should stand here, " + kind + "; found " + shown(token) + hint};
-  }
-
-  std::string_view text_;
-  std::size_t here_ = 0;
-};
 
 std::string element_type_name(long long type) {
   static constexpr const char* names[] = {"",
@@ -152,12 +58,19 @@ std::optional<ElementKind> kind_of(long long type) {
       return ElementKind{ElementShape::tri6, 6};
     case 16:
       return ElementKind{ElementShape::quad8, 8};
+    case 4:
+      return ElementKind{ElementShape::tet4, 4};
+    case 5:
+      return ElementKind{ElementShape::hex8, 8};
     default:
       return std::nullopt;
   }
 }
 
-int dimension_of(ElementShape shape) { return shape == ElementShape::point ? 0 : shape == ElementShape::bar2 ? 1 : 2; }
+int dimension_of(ElementShape shape) {
+  if (is_solid(shape)) return 3;
+  return shape == ElementShape::point ? 0 : shape == ElementShape::bar2 ? 1 : 2;
+}
 
 class Parser {
  public:
@@ -167,10 +80,10 @@ class Parser {
   void parse() {
     format();
     while (!tokens_.at_end()) {
-      const Token token = tokens_.next("a section");
+      const MshToken token = tokens_.next("a section");
       const std::string section(token.text);
       if (section.front() != '$')
-        throw Fault{token.offset, "a section should begin here; found " + Tokens::shown(token)};
+        throw MshFault{token.offset, "a section should begin here; found " + MshTokens::shown(token)};
       if (section == "$PhysicalNames")
         physical_names();
       else if (section == "$Entities" && version_4_)
@@ -180,12 +93,12 @@ class Parser {
       else if (section == "$Elements")
         version_4_ ? elements_4() : elements_2();
       else if (section == "$PartitionedEntities")
-        throw Fault{token.offset, "the mesh is partitioned: save it with \"gmsh -unpartition\""};
+        throw MshFault{token.offset, "the mesh is partitioned: save it with \"gmsh -unpartition\""};
       else
         tokens_.skip_section("$End" + section.substr(1));
     }
-    if (file_.nodes.empty()) throw Fault{tokens_.offset(), "the file has no nodes"};
-    if (file_.elements.empty()) throw Fault{tokens_.offset(), "the file has no elements"};
+    if (file_.nodes.empty()) throw MshFault{tokens_.offset(), "the file has no nodes"};
+    if (file_.elements.empty()) throw MshFault{tokens_.offset(), "the file has no elements"};
   }
 
  private:
@@ -194,17 +107,17 @@ class Parser {
   }
 
   void format() {
-    const Token first = tokens_.next("$MeshFormat");
+    const MshToken first = tokens_.next("$MeshFormat");
     // what it holds instead is not told: it may be any file of the machine
-    if (first.text != "$MeshFormat") throw Fault{first.offset, "a mesh file of Gmsh begins with $MeshFormat"};
-    const Token version = tokens_.next("the version of the format");
+    if (first.text != "$MeshFormat") throw MshFault{first.offset, "a mesh file of Gmsh begins with $MeshFormat"};
+    const MshToken version = tokens_.next("the version of the format");
     if (version.text != "2.2" && version.text != "4.1")
-      throw Fault{version.offset,
-                  "version " + Tokens::shown(version) + " of the format is not read, only 2.2 and 4.1" + conversion()};
+      throw MshFault{version.offset, "version " + MshTokens::shown(version) +
+                                         " of the format is not read, only 2.2 and 4.1" + conversion()};
     version_4_ = version.text == "4.1";
-    const Token kind = tokens_.next("0 for ASCII");
-    if (kind.text == "1") throw Fault{kind.offset, "the file is binary, only ASCII is read" + conversion()};
-    if (kind.text != "0") throw Fault{kind.offset, "0 for ASCII should stand here; found " + Tokens::shown(kind)};
+    const MshToken kind = tokens_.next("0 for ASCII");
+    if (kind.text == "1") throw MshFault{kind.offset, "the file is binary, only ASCII is read" + conversion()};
+    if (kind.text != "0") throw MshFault{kind.offset, "0 for ASCII should stand here; found " + MshTokens::shown(kind)};
     tokens_.integer("the size of a number");
     tokens_.close("$EndMeshFormat", "the format");
   }
@@ -215,7 +128,7 @@ class Parser {
       const long long dimension = tokens_.integer("the dimension of a physical group");
       const long long tag = tokens_.integer("the number of a physical group");
       const std::string name = tokens_.quoted("the name of a physical group");
-      if (dimension >= 0 && dimension <= 2) file_.names[{static_cast<int>(dimension), tag}] = name;
+      if (dimension >= 0 && dimension <= 3) file_.names[{static_cast<int>(dimension), tag}] = name;
     }
     tokens_.close("$EndPhysicalNames", "the " + std::to_string(count) + " names");
   }
@@ -241,7 +154,7 @@ class Parser {
 
   void add_node(long long tag, const std::array<double, 3>& at, std::size_t offset) {
     if (!position_.emplace(tag, static_cast<int>(file_.nodes.size())).second)
-      throw Fault{offset, "node " + std::to_string(tag) + " appears twice"};
+      throw MshFault{offset, "node " + std::to_string(tag) + " appears twice"};
     file_.nodes.push_back({tag, at});
   }
 
@@ -269,7 +182,7 @@ class Parser {
     for (long long block = 0; block < blocks; ++block) {
       const std::size_t offset = tokens_.offset();
       const long long dimension = tokens_.integer("the dimension of a block's entity");
-      if (dimension < 0 || dimension > 3) throw Fault{offset, "the dimension of an entity is 0 to 3"};
+      if (dimension < 0 || dimension > 3) throw MshFault{offset, "the dimension of an entity is 0 to 3"};
       tokens_.integer("the number of a block's entity");
       const bool parametric = tokens_.integer("1 for parametric nodes, else 0") == 1;
       const long long size = tokens_.count("the number of nodes of a block");
@@ -316,8 +229,8 @@ class Parser {
       const long long entity = tokens_.integer("the number of a block's entity");
       const ElementKind kind = element_kind(std::nullopt);
       if (dimension != dimension_of(kind.shape))
-        throw Fault{offset, "an entity of dimension " + std::to_string(dimension) + " holds elements of dimension " +
-                                std::to_string(dimension_of(kind.shape))};
+        throw MshFault{offset, "an entity of dimension " + std::to_string(dimension) + " holds elements of dimension " +
+                                   std::to_string(dimension_of(kind.shape))};
       const auto known = groups_of_.find({static_cast<int>(dimension), entity});
       const std::vector<long long> none{0};
       const auto& groups = known == groups_of_.end() || known->second.empty() ? none : known->second;
@@ -336,10 +249,11 @@ class Parser {
     const std::size_t offset = tokens_.offset();
     const long long type = tokens_.integer("the type of an element");
     if (const auto kind = kind_of(type)) return *kind;
-    throw Fault{offset,
-                (tag ? "element " + std::to_string(*tag) : "a block of elements") + " has type " +
+    throw MshFault{
+        offset, (tag ? "element " + std::to_string(*tag) : "a block of elements") + " has type " +
                     std::to_string(type) + " (" + element_type_name(type) +
-                    "), which is not read; plane bodies of 3- or 6-node triangles or 4- or 8-node quadrangles are"};
+                    "), which is not read; plane bodies of 3- or 6-node triangles or 4- or 8-node quadrangles are, and "
+                    "bodies in space of 4-node tetrahedra or 8-node hexahedra"};
   }
 
   void add_element(long long tag, ElementKind kind, const std::vector<long long>& groups, std::size_t offset) {
@@ -349,8 +263,8 @@ class Parser {
       const long long node = tokens_.integer("a node of element " + std::to_string(tag));
       const auto known = position_.find(node);
       if (known == position_.end())
-        throw Fault{node_offset, "element " + std::to_string(tag) + " has node " + std::to_string(node) +
-                                     ", which is not in $Nodes above it"};
+        throw MshFault{node_offset, "element " + std::to_string(tag) + " has node " + std::to_string(node) +
+                                        ", which is not in $Nodes above it"};
       element.nodes[k] = known->second;
     }
     for (long long group : groups) {
@@ -366,11 +280,11 @@ class Parser {
 
   static void check_total(long long announced, long long found, std::size_t offset, const std::string& what) {
     if (announced != found)
-      throw Fault{offset, std::to_string(announced) + " " + what + " are announced, " + std::to_string(found) +
-                              " are in the blocks"};
+      throw MshFault{offset, std::to_string(announced) + " " + what + " are announced, " + std::to_string(found) +
+                                 " are in the blocks"};
   }
 
-  Tokens tokens_;
+  MshTokens tokens_;
   const std::string& file_name_;
   MshFile& file_;
   bool version_4_ = false;
@@ -391,7 +305,7 @@ MshFile parse_msh(const std::string& text, const std::string& file_name) {
   MshFile file;
   try {
     Parser(text, file_name, file).parse();
-  } catch (const Fault& fault) {
+  } catch (const MshFault& fault) {
     file.error = msh_location(text, fault.offset) + ": " + fault.message;
   }
   return file;

@@ -13,7 +13,7 @@
 
 namespace stickslip {
 
-/// Tag of a physical group: dimension (0 points, 1 curves, 2 surfaces) and number.
+/// Tag of a physical group: dimension (0 points, 1 curves, 2 surfaces, 3 volumes) and number.
 using MshGroup = std::pair<int, long long>;
 
 struct MshNode {

@@ -1,14 +1,17 @@
 #include "core/mesh/msh_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
-#include <tuple>
+#include <utility>
 
+#include "core/mesh/msh_elements.hpp"
 #include "core/mesh/msh_file.hpp"
 #include "core/mesh/quality.hpp"
 #include "core/mesh/sides.hpp"
@@ -17,15 +20,12 @@ namespace stickslip {
 namespace {
 
 using Elements = std::vector<const MshElement*>;
-/// A side of an element: its ends, and its middle, or -1.
-struct Edge {
-  int first, second, middle = -1;
-  bool operator<(const Edge& o) const {
-    return std::tie(first, second, middle) < std::tie(o.first, o.second, o.middle);
-  }
-};
 
-Edge turned(const Edge& edge) { return {edge.second, edge.first, edge.middle}; }
+/// What a physical group of a dimension is called.
+std::string kind_of_group(int dimension) {
+  static constexpr const char* kinds[] = {"point", "curve", "surface", "volume"};
+  return kinds[dimension];
+}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string list;
@@ -39,79 +39,29 @@ std::string in_digits(double x) {
   return text.str();
 }
 
-/// Twice the signed area between the corners of an element where it lies.
-double twice_area(const Mesh& mesh, const Points<double>& points, int element) {
-  const int count = corners_of(mesh.shape);
-  const int* nodes = mesh.connectivity.data() + element * nodes_of(mesh.shape);
-  double sum = 0;
-  for (int k = 0; k < count; ++k) {
-    // from the first node, so that a body far from the origin loses no digits
-    const Vec<double, 2> a = points.col(nodes[k]) - points.col(nodes[0]);
-    const Vec<double, 2> b = points.col(nodes[(k + 1) % count]) - points.col(nodes[0]);
-    sum += a[0] * b[1] - a[1] * b[0];
-  }
-  return sum;
-}
-
-/// Segments in order: each piece from its beginning (the node no segment leads to; a closed one from the first given).
-Side side_of_segments(const std::vector<Edge>& segments) {
-  std::multimap<int, std::size_t> from;
-  std::set<int> ends;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    from.emplace(segments[i].first, i);
-    ends.insert(segments[i].second);
-  }
-  Side side;
-  std::set<int> listed;
-  auto list = [&](int node) {
-    if (listed.insert(node).second) side.nodes.push_back(node);
-  };
-  std::vector<bool> used(segments.size(), false);
-  auto follow = [&](std::size_t i) {
-    for (std::optional<std::size_t> next = i; next && !used[*next];) {
-      used[*next] = true;
-      const auto [a, b, middle] = segments[*next];
-      list(a);
-      if (middle >= 0) {
-        list(middle);
-        side.facets.push_back({a, middle});
-        side.facets.push_back({middle, b});
-        side.quadratic.push_back({a, b, middle});
-      } else {
-        side.facets.push_back({a, b});
-      }
-      list(b);
-      next.reset();
-      for (auto [it, last] = from.equal_range(b); it != last && !next; ++it)
-        if (!used[it->second]) next = it->second;
-    }
-  };
-  for (std::size_t i = 0; i < segments.size(); ++i)
-    if (!ends.count(segments[i].first)) follow(i);
-  for (std::size_t i = 0; i < segments.size(); ++i) follow(i);
-  return side;
-}
-
 class Import {
  public:
-  Import(const std::string& text, const std::string& file_name, const MshFile& file, ImportResult& result)
-      : text_(text), file_name_(file_name), file_(file), result_(result) {
+  Import(const std::string& text, const std::string& file_name, const MshFile& file, int dimension,
+         ImportResult& result)
+      : text_(text), file_name_(file_name), file_(file), dimension_(dimension), result_(result) {
     for (const MshElement& element : file.elements)
       if (element.group.second != 0) groups_[element.group].push_back(&element);
   }
 
   void run() {
+    if (is_of_other_space()) return;
     bool found = false;
     for (const auto& [group, elements] : groups_)
-      if (group.first == 2) {
+      if (group.first == dimension_) {
         found = true;
         if (!used_names_.insert(name_of(group)).second) {
-          fault(elements.front(), "two physical surfaces have the name \"" + name_of(group) + "\"");
+          fault(elements.front(),
+                "two physical " + kind_of_group(dimension_) + "s have the name \"" + name_of(group) + "\"");
         } else if (const auto body = body_of(group, elements)) {
           result_.bodies.push_back(*body);
         }
       }
-    if (!found) report_no_surface();
+    if (!found) report_no_body();
     if (result_.errors.empty()) note_unused();
   }
 
@@ -120,25 +70,45 @@ class Import {
     result_.errors.push_back(file_name_ + ":" + msh_location(text_, at->offset) + ": " + message);
   }
 
+  /// Whether the file is of bodies in space and the space is plane, or the reverse; reported.
+  bool is_of_other_space() {
+    const auto first = std::find_if(file_.elements.begin(), file_.elements.end(),
+                                    [](const MshElement& e) { return is_solid(e.shape); });
+    const bool is_in_space = first != file_.elements.end();
+    if (is_in_space && dimension_ == 2)
+      fault(&*first, "element " + std::to_string(first->tag) +
+                         " is of a mesh in space, and the space of the scene is "
+                         "plane; \"space\": \"solid\" takes this mesh");
+    if (!is_in_space && dimension_ == 3)
+      result_.errors.push_back(file_name_ +
+                               ":1:1: no element is a tetrahedron or a hexahedron, so there is no body for "
+                               "the space solid; give its volume a physical name and mesh it (gmsh -3); a plane mesh "
+                               "needs a plane space, such as \"space\": \"plane_strain\"");
+    return is_in_space != (dimension_ == 3);
+  }
+
   std::string name_of(const MshGroup& group) const {
     const auto name = file_.names.find(group);
     return name == file_.names.end() || name->second.empty() ? std::to_string(group.second) : name->second;
   }
 
-  void report_no_surface() {
+  std::string shown(const MshGroup& group) const { return kind_of_group(group.first) + " \"" + name_of(group) + "\""; }
+
+  void report_no_body() {
     std::vector<std::string> existing;
-    for (const auto& [group, elements] : groups_)
-      existing.push_back((group.first == 1 ? "curve \"" : "point \"") + name_of(group) + "\"");
-    const auto is_plane = [](const MshElement& e) { return e.group.first == 2; };
-    const auto plane = std::count_if(file_.elements.begin(), file_.elements.end(), is_plane);
-    result_.errors.push_back(
-        file_name_ + ":1:1: no element belongs to a physical surface, so there is no body; the file has " +
-        std::to_string(plane) + " plane elements in no physical surface and the physical groups: " +
-        (existing.empty() ? "none" : joined(existing)));
+    for (const auto& [group, elements] : groups_) existing.push_back(shown(group));
+    const auto fills = [&](const MshElement& e) { return e.group.first == dimension_; };
+    const auto count = std::count_if(file_.elements.begin(), file_.elements.end(), fills);
+    const std::string kind = kind_of_group(dimension_);
+    result_.errors.push_back(file_name_ + ":1:1: no element belongs to a physical " + kind +
+                             ", so there is no body; the file has " + std::to_string(count) +
+                             (dimension_ == 2 ? " plane" : " solid") + " elements in no physical " + kind +
+                             " and the physical groups: " + (existing.empty() ? "none" : joined(existing)));
   }
 
   std::optional<ImportedMesh> body_of(const MshGroup& group, const Elements& elements) {
-    ImportedMesh body{file_name_, name_of(group), {}, {}};
+    ImportedMesh body{file_name_, name_of(group), {}, {}, {}};
+    body.mesh.dimension = dimension_;
     body.mesh.shape = elements.front()->shape;
     for (const MshElement* element : elements)
       if (element->shape != body.mesh.shape) {
@@ -147,7 +117,8 @@ class Import {
         return std::nullopt;
       }
     const std::vector<int> node = number_nodes(elements, body);
-    if (!is_plane(body.body, elements) || !turn_counter_clockwise(elements, body)) return std::nullopt;
+    if (dimension_ == 2 && !is_plane(body.body, elements)) return std::nullopt;
+    if (!turn_to_the_right_hand(elements, body)) return std::nullopt;
     if (!lie_beside_each_other(elements, body)) return std::nullopt;
     note_slits(body, node);
     add_sides(body, node);
@@ -162,9 +133,10 @@ class Import {
       for (int k = 0; k < count; ++k) number[element->nodes[k]] = 0;
     for (int& n : number)
       if (n == 0) n = body.mesh.node_count++;
-    body.points.resize(2, body.mesh.node_count);
+    body.points.resize(dimension_, body.mesh.node_count);
     for (std::size_t i = 0; i < number.size(); ++i)
-      if (number[i] >= 0) body.points.col(number[i]) << file_.nodes[i].place[0], file_.nodes[i].place[1];
+      for (int axis = 0; number[i] >= 0 && axis < dimension_; ++axis)
+        body.points(axis, number[i]) = file_.nodes[i].place[axis];
     for (const MshElement* element : elements)
       for (int k = 0; k < count; ++k) body.mesh.connectivity.push_back(number[element->nodes[k]]);
     return number;
@@ -190,25 +162,21 @@ class Import {
     return false;
   }
 
-  /// Turns all elements if all are clockwise; false, with the fault, if an element cannot be used.
-  bool turn_counter_clockwise(const Elements& elements, ImportedMesh& body) {
+  /// Turns all elements over if most are clockwise, in space left-handed; false, with the fault, if an element cannot
+  /// be used.
+  bool turn_to_the_right_hand(const Elements& elements, ImportedMesh& body) {
     Mesh& mesh = body.mesh;
-    const int count = nodes_of(mesh.shape), all = mesh.element_count();
-    int clockwise = 0;
-    for (int e = 0; e < all; ++e) clockwise += twice_area(mesh, body.points, e) < 0;
-    const bool mostly_clockwise = 2 * clockwise > all;
-    for (int e = 0; e < all && mostly_clockwise; ++e) {
-      const auto first = mesh.connectivity.begin() + e * count;
-      std::reverse(first + 1, first + corners_of(mesh.shape));
-      std::reverse(first + corners_of(mesh.shape), first + count);  // the last side is now the first
-    }
+    const int all = mesh.element_count();
+    int against = 0;
+    for (int e = 0; e < all; ++e) against += orientation(mesh, body.points, e) < 0;
+    for (int e = 0; e < all && 2 * against > all; ++e) turn_over(mesh, e);
     const auto bad = first_inverted_element(mesh, body.points);
     if (!bad) return is_thick_enough(elements, body);
-    const MshElement* element = elements[*bad];
-    const bool against = twice_area(mesh, body.points, *bad) < 0 && clockwise != 0 && clockwise != all;
-    fault(element, "element " + std::to_string(element->tag) + " of body \"" + body.body + "\" " +
-                       (against ? "is turned against the others (clockwise and counter-clockwise are mixed)"
-                                : "is degenerate: a corner is flat or turns inwards"));
+    const bool is_against = orientation(mesh, body.points, *bad) < 0 && against != 0 && against != all;
+    const std::string mixed = dimension_ == 2 ? "clockwise and counter-clockwise" : "left-handed and right-handed";
+    fault(elements[*bad], "element " + std::to_string(elements[*bad]->tag) + " of body \"" + body.body + "\" " +
+                              (is_against ? "is turned against the others (" + mixed + " are mixed)"
+                                          : "is degenerate: a corner is flat or turns inwards"));
     return false;
   }
 
@@ -227,110 +195,126 @@ class Import {
     return "line " + place.substr(0, place.find(':'));
   }
 
-  /// Whether no two elements overlap by their nodes. Elements are counter-clockwise, so two with a common side in the
-  /// same direction lie on the same side of it; an element that is listed twice has all sides in common with itself.
+  /// Whether no two elements overlap by their nodes. Elements are counter-clockwise (right-handed), so two with a common
+  /// side in the same direction lie on the same side of it; an element that is listed twice has all sides in common with
+  /// itself.
   bool lie_beside_each_other(const Elements& elements, const ImportedMesh& body) {
     const Mesh& mesh = body.mesh;
-    const int count = nodes_of(mesh.shape), corners = corners_of(mesh.shape);
-    std::map<std::pair<int, int>, int> element_left_of;
+    const int count = nodes_of(mesh.shape);
+    std::map<ElementFacet, int> element_at;
     const auto nodes_of_element = [&](int e) {
-      const auto first = mesh.connectivity.begin() + e * count;
+      const auto first = mesh.connectivity.begin() + static_cast<std::ptrdiff_t>(e) * count;
       return std::set<int>(first, first + count);
     };
     for (int e = 0; e < mesh.element_count(); ++e)
-      for (int k = 0; k < corners; ++k) {
-        const int* nodes = mesh.connectivity.data() + e * count;
-        const auto [other, is_new] = element_left_of.try_emplace({nodes[k], nodes[(k + 1) % corners]}, e);
+      for (const ElementFacet& facet : facets_of_element(mesh, e)) {
+        const auto [other, is_new] = element_at.try_emplace(ends_of(facet), e);
         if (is_new) continue;
         const MshElement *element = elements[e], *first = elements[other->second];
         const bool twice = nodes_of_element(e) == nodes_of_element(other->second);
+        const std::string common = dimension_ == 2 ? "edge" : "face";
         fault(element, "element " + std::to_string(element->tag) + " of body \"" + body.body + "\" " +
                            (twice ? "has the same nodes as element " : "overlaps element ") +
                            std::to_string(first->tag) + " of " + line_of(first) +
                            (twice ? ": the body would be twice as stiff there; delete one of the two"
-                                  : ": both lie on the same side of their common edge"));
+                                  : ": both lie on the same side of their common " + common));
         return false;
       }
     return true;
   }
 
-  /// Notes nodes of a body at one place: elements do not hold together there.
-  void note_slits(const ImportedMesh& body, const std::vector<int>& number) {
-    std::map<std::pair<double, double>, long long> tag_at;
-    for (std::size_t i = 0; i < number.size(); ++i) {
-      if (number[i] < 0) continue;
-      const MshNode& node = file_.nodes[i];
-      const auto [first, is_new] = tag_at.try_emplace({node.place[0], node.place[1]}, node.tag);
-      if (is_new) continue;
-      result_.notes.push_back("nodes " + std::to_string(first->second) + " and " + std::to_string(node.tag) +
-                              " of body \"" + body.body +
-                              "\" are at one place, so that its elements do not hold together there; unless a slit is "
-                              "meant, merge them (Gmsh: Coherence Mesh)");
-      return;
-    }
+  /// Of an edge its ends alone: two that differ in their middles overlap too.
+  ElementFacet ends_of(const ElementFacet& facet) const {
+    return dimension_ == 2 ? ElementFacet{facet[0], facet[1], -1, -1} : facet;
   }
 
-  /// Says that an element of a curve or a point is listed twice, so that loads there would count twice.
-  void fault_twice(const MshElement* element, const MshElement* first, const MshGroup& group) {
-    fault(element, "element " + std::to_string(element->tag) + " of physical " +
-                       (group.first == 1 ? "curve" : "point") + " \"" + name_of(group) +
-                       "\" has the same nodes as element " + std::to_string(first->tag) + " of " + line_of(first) +
-                       ": loads would count twice there; delete one of the two");
+  /// Notes nodes of a body at one place, and parts of it that share no node: elements do not hold together there.
+  /// `number`: of the nodes of the file in the body, or -1.
+  void note_slits(const ImportedMesh& body, const std::vector<int>& number) {
+    std::vector<long long> tags;  // by the number of the node
+    for (std::size_t i = 0; i < number.size(); ++i)
+      if (number[i] >= 0) tags.push_back(file_.nodes[i].tag);
+    const std::string of_body = " of body \"" + body.body + "\"";
+    const char* const remedy = "; unless that is meant, merge nodes (Gmsh: Coherence Mesh), or give each part a name";
+    if (const auto pair = nodes_at_one_place(body.mesh, body.points))
+      result_.notes.push_back("nodes " + std::to_string(tags[pair->first]) + " and " +
+                              std::to_string(tags[pair->second]) + of_body +
+                              " are at one place, so that its elements do not hold together there" + remedy);
+    if (const int parts = count_of_parts(body.mesh); parts > 1)
+      result_.notes.push_back("the elements" + of_body + " are " + std::to_string(parts) +
+                              " parts that share no node, so that nothing holds them together" + remedy);
+  }
+
+  /// Whether an element of a group is the first with its nodes; otherwise it is reported, as loads would count twice.
+  bool is_new(const MshElement* element, const MshGroup& group, std::map<ElementFacet, const MshElement*>& listed) {
+    ElementFacet nodes{-1, -1, -1, -1};
+    std::copy_n(element->nodes.begin(), std::min(element->node_count, 4), nodes.begin());
+    std::sort(nodes.begin(), nodes.end());
+    const auto [first, inserted] = listed.try_emplace(nodes, element);
+    if (!inserted)
+      fault(element, "element " + std::to_string(element->tag) + " of physical " + shown(group) +
+                         " has the same nodes as element " + std::to_string(first->second->tag) + " of " +
+                         line_of(first->second) + ": loads would count twice there; delete one of the two");
+    return inserted;
   }
 
   void add_sides(ImportedMesh& body, const std::vector<int>& node) {
-    const Mesh& mesh = body.mesh;
-    const int count = nodes_of(mesh.shape), corners = corners_of(mesh.shape);
-    std::set<Edge> edges;  // directed as their element has them; an inner edge in both directions
-    for (int e = 0; e < mesh.element_count(); ++e)
-      for (int k = 0; k < corners; ++k) {
-        const int* nodes = mesh.connectivity.data() + e * count;
-        edges.insert({nodes[k], nodes[(k + 1) % corners], is_quadratic(mesh.shape) ? nodes[corners + k] : -1});
-      }
+    const auto [facets, edges] = facets_and_edges(body.mesh);
     for (const auto& [group, elements] : groups_) {
-      if (group.first == 2) continue;
-      std::vector<Edge> segments;
-      Side side;
-      std::map<Edge, const MshElement*> listed;
-      const auto is_new = [&, &group = group](const Edge& edge, const MshElement* element) {
-        const auto [first, inserted] = listed.try_emplace(edge.first < edge.second ? edge : turned(edge), element);
-        if (!inserted) fault_twice(element, first->second, group);
-        return inserted;
-      };
+      if (group.first == dimension_) continue;
+      const int of = group.first + 1;  // what bounds bodies of this dimension
+      const bool is_facet = of == dimension_;
+      const auto& known = is_facet ? facets : edges;
+      std::vector<ElementFacet> own;
+      std::map<ElementFacet, const MshElement*> listed;
       for (const MshElement* element : elements) {
-        const int first = node[element->nodes[0]];
-        if (group.first == 0) {
-          if (first < 0 || !is_new({first, first}, element)) continue;
-          side.nodes.push_back(first);
-        } else {
-          const Edge edge{first, node[element->nodes[1]], element->node_count == 3 ? node[element->nodes[2]] : -1};
-          if (!edges.count(edge) && !edges.count(turned(edge))) continue;
-          if (!is_new(edge, element)) continue;
-          segments.push_back(edges.count(edge) ? edge : turned(edge));
-        }
+        if (element->node_count > 4) continue;  // a side of a quadratic element, which no body in space has
+        std::vector<int> at(element->nodes.begin(), element->nodes.begin() + element->node_count);
+        for (int& n : at) n = node[n];
+        const ElementFacet facet = element_facet(at, of), back = turned(facet, of);
+        if (of > 1 ? !known.count(facet) && !known.count(back) : facet[0] < 0) continue;
+        if (!is_new(element, group, listed)) continue;
+        own.push_back(of == 1 || known.count(facet) ? facet : back);
         used_.insert(element);
       }
-      if (group.first == 1) side = side_of_segments(segments);
-      if (side.nodes.empty()) continue;
+      if (own.empty()) continue;
+      Side side = side_of_facets(own, of);
+      if (!is_facet) side = {side.nodes, {}, {}};
+      for (const ElementFacet& edge : own)
+        if (of == 2 && !is_facet) body.curves[name_of(group)].push_back({edge[0], edge[1]});
       if (!body.mesh.sides.emplace(name_of(group), side).second)
         fault(elements.front(),
               "two physical groups on body \"" + body.body + "\" have the name \"" + name_of(group) + "\"");
     }
   }
 
-  /// Curves and points that are no part of a body: wholly, that is allowed; in part, it is a fault.
+  /// The sides of all elements, directed as their elements have them, so an inner one in both directions; and in space
+  /// the edges of these.
+  static std::pair<std::set<ElementFacet>, std::set<ElementFacet>> facets_and_edges(const Mesh& mesh) {
+    std::set<ElementFacet> facets, edges;
+    for (int e = 0; e < mesh.element_count(); ++e)
+      for (const ElementFacet& facet : facets_of_element(mesh, e)) {
+        facets.insert(facet);
+        const int corners = facet[3] < 0 ? 3 : 4;
+        for (int k = 0; mesh.dimension == 3 && k < corners; ++k)
+          edges.insert({facet[k], facet[(k + 1) % corners], -1, -1});
+      }
+    return {facets, edges};
+  }
+
+  /// Surfaces, curves and points that are no part of a body: wholly, that is allowed; in part, it is a fault.
   void note_unused() {
     for (const auto& [group, elements] : groups_) {
-      if (group.first == 2) continue;
-      const std::string what = (group.first == 1 ? "physical curve \"" : "physical point \"") + name_of(group) + "\"";
+      if (group.first == dimension_) continue;
+      const std::string what = "physical " + shown(group);
       const auto lost = [&](const MshElement* e) { return used_.count(e) == 0; };
       const auto first = std::find_if(elements.begin(), elements.end(), lost);
       if (first == elements.end()) continue;
       if (std::all_of(elements.begin(), elements.end(), lost)) {
         result_.notes.push_back(what + " is not on a body");
       } else {
-        fault(*first, "element " + std::to_string((*first)->tag) + " of " + what +
-                          " is no edge or node of an element of a body");
+        fault(*first, "element " + std::to_string((*first)->tag) + " of " + what + " is no " +
+                          (dimension_ == 2 ? "" : "face, ") + "edge or node of an element of a body");
       }
     }
   }
@@ -338,20 +322,21 @@ class Import {
   const std::string& text_;
   const std::string& file_name_;
   const MshFile& file_;
+  int dimension_;  // of the space
   ImportResult& result_;
   std::map<MshGroup, Elements> groups_;
   std::set<std::string> used_names_;
-  std::set<const MshElement*> used_;  // lines and points that became part of a side
+  std::set<const MshElement*> used_;  // what became part of a side
 };
 
 }  // namespace
 
-ImportResult read_msh(std::istream& stream, const std::string& file_name) {
+ImportResult read_msh(std::istream& stream, const std::string& file_name, int dimension) {
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   ImportResult result;
   const MshFile file = parse_msh(text, file_name);
   if (file.error.empty()) {
-    Import(text, file_name, file, result).run();
+    Import(text, file_name, file, dimension, result).run();
   } else {
     result.errors.push_back(file_name + ":" + file.error);
   }

@@ -6,6 +6,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <vector>
 
 namespace stickslip {
 namespace {
@@ -114,6 +118,51 @@ std::optional<int> first_inverted_element(const Mesh& mesh, const Points<double>
     }
   }
   return std::nullopt;
+}
+
+std::optional<std::pair<int, int>> nodes_at_one_place(const Mesh& mesh, const Points<double>& points) {
+  constexpr double near = 1e-6, cell = 1e-3;  // of the shortest edge; a cell holds nodes that are near one another
+  const int count = nodes_of(mesh.shape), corners = corners_of(mesh.shape);
+  double least = std::numeric_limits<double>::infinity();
+  for (int e = 0; e < mesh.element_count(); ++e)
+    for (int a = 0; a < corners; ++a)
+      for (int b = 0; b < a; ++b) {
+        const int* nodes = mesh.connectivity.data() + static_cast<std::ptrdiff_t>(e) * count;
+        least = std::min(least, (points.col(nodes[a]) - points.col(nodes[b])).norm());
+      }
+  std::map<std::array<double, 3>, int> first_in;
+  for (int n = 0; n < static_cast<int>(points.cols()); ++n) {
+    std::set<std::array<double, 3>> cells;  // the own one, and those beyond a border that is near
+    for (int side = 0; side < 8; ++side) {
+      std::array<double, 3> at{};
+      for (int i = 0; i < points.rows(); ++i)
+        at[i] = std::floor((points(i, n) + (side >> i & 1 ? near : -near) * least) / (cell * least));
+      cells.insert(at);
+    }
+    for (const auto& at : cells) {
+      const auto [other, is_new] = first_in.try_emplace(at, n);
+      if (!is_new && (points.col(other->second) - points.col(n)).norm() <= near * least)
+        return std::pair(other->second, n);
+    }
+  }
+  return std::nullopt;
+}
+
+int count_of_parts(const Mesh& mesh) {
+  const int count = nodes_of(mesh.shape);
+  std::vector<int> part(mesh.node_count);
+  std::iota(part.begin(), part.end(), 0);
+  const auto root = [&](int node) {
+    while (part[node] != node) node = part[node] = part[part[node]];
+    return node;
+  };
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int* nodes = mesh.connectivity.data() + static_cast<std::ptrdiff_t>(e) * count;
+    for (int k = 1; k < count; ++k) part[root(nodes[k])] = root(nodes[0]);
+  }
+  int parts = 0;
+  for (int node = 0; node < mesh.node_count; ++node) parts += part[node] == node;
+  return parts;
 }
 
 }  // namespace stickslip

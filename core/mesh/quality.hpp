@@ -1,7 +1,8 @@
-/// Whether the elements of a mesh are usable where they lie.
+/// Whether the elements of a mesh are usable where they lie, and whether they hold together.
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "core/mesh/mesh.hpp"
 
@@ -25,5 +26,12 @@ struct ThinElement {
 /// of displacements over the thickness of the element, and displacements and coordinates round by 1e-16 of the size of
 /// the body, or of its distance from the origin.
 std::optional<ThinElement> first_thin_element(const Mesh&, const Points<double>&);
+
+/// Two nodes that are nearer to one another than a millionth of the shortest edge of the elements; none if there are none.
+/// What a mesh generator computes twice differs by its rounding, 1e-11 and less; no mesh has edges as short as that.
+std::optional<std::pair<int, int>> nodes_at_one_place(const Mesh&, const Points<double>&);
+
+/// Number of parts of a mesh that share no node with one another.
+int count_of_parts(const Mesh&);
 
 }  // namespace stickslip

@@ -155,6 +155,8 @@ class Splitting {
 
 }  // namespace
 
-ImportedMesh split(const ImportedMesh& coarse) { return Splitting(coarse).run(); }
+ImportedMesh split(const ImportedMesh& coarse) {
+  return is_solid(coarse.mesh.shape) ? split_in_space(coarse) : Splitting(coarse).run();
+}
 
 }  // namespace stickslip

@@ -80,7 +80,8 @@ std::optional<PlaneMesh> read_plane_mesh(const std::string& name, const JsonNode
 /// The mesh file's content, read at most once; none where it cannot be read.
 const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneReading& reading) {
   const std::string path = (reading.folder / name).lexically_normal().string();
-  auto found = reading.mesh_files.find(path);
+  const std::pair of_space{path, reading.dimension()};
+  auto found = reading.mesh_files.find(of_space);
   if (found == reading.mesh_files.end()) {
     constexpr std::uintmax_t most = std::uintmax_t{1} << 30;  // some 10 million nodes
     if (const std::string fault = unreadable(path, most); !fault.empty()) {
@@ -89,7 +90,8 @@ const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneRe
     }
     const std::string text = read_file(path);
     std::istringstream content(text);
-    found = reading.mesh_files.emplace(path, MeshFile{read_msh(content, path), fingerprint(text)}).first;
+    const MeshFile file{read_msh(content, path, reading.dimension()), fingerprint(text)};
+    found = reading.mesh_files.emplace(of_space, file).first;
   }
   reading.mesh_fingerprints[name] = found->second.fingerprint;
   for (const std::string& error : found->second.content.errors) reading.diagnostics.error({{}, "", error});
@@ -99,8 +101,9 @@ const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneRe
 /// The mesh, split as often as `node` says: into a million elements at most, as they are made before any memory is
 /// estimated.
 std::optional<MeshDescription> split_often(ImportedMesh mesh, const JsonNode& node) {
+  const double parts = mesh.mesh.dimension == 2 ? 4 : 8;
   int most = 0;
-  for (double elements = 4.0 * mesh.mesh.element_count(); elements <= 1e6; elements *= 4) ++most;
+  for (double elements = parts * mesh.mesh.element_count(); elements <= 1e6; elements *= parts) ++most;
   const auto times = node.count(0, most);
   if (!times) return std::nullopt;
   for (int k = 0; k < *times; ++k) mesh = split(mesh);
@@ -110,7 +113,8 @@ std::optional<MeshDescription> split_often(ImportedMesh mesh, const JsonNode& no
 std::optional<MeshDescription> read_gmsh(const JsonNode& mesh, const JsonNode& node, SceneReading& reading) {
   const auto name = node.text();
   const auto body = mesh.find("body");
-  if (!body) mesh.error(R"(the key "body" is missing: the physical name of a surface in the mesh file)");
+  if (!body)
+    mesh.error(R"(the key "body" is missing: the physical name of a surface, in space of a volume, in the mesh file)");
   const auto body_name = body ? body->text() : std::nullopt;
   const MeshFile* file = name ? mesh_file(node, *name, reading) : nullptr;
   if (!file || !body_name) return std::nullopt;
@@ -158,10 +162,11 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
   const auto generator = std::find_if(mesh_kinds.begin(), mesh_kinds.end(),
                                       [&name = name](const MeshKind& kind) { return name == kind.key; });
   const bool from_file = generator == mesh_kinds.end();
-  if (reading.dimension() == 3 && (from_file || !generator->is_in_space)) {
+  if (reading.dimension() == 3 && !from_file && !generator->is_in_space) {
     std::vector<std::string> allowed;
     for (const auto& kind : mesh_kinds)
       if (kind.is_in_space) allowed.emplace_back(kind.key);
+    allowed.emplace_back("gmsh");
     mesh.error_at_key(in_quotes(name) +
                       " in the space solid is not available in this version; allowed: " + listed(allowed));
     return std::nullopt;
@@ -188,20 +193,23 @@ Schema mesh_schema() {
     one.push_back({{"required", {kind.key}}});
   }
   properties["gmsh"] = {
-      {"description", "file of gmsh beside the scene, MSH 2.2 or 4.1 ASCII; sides: its physical curves; with body"},
+      {"description",
+       "file of gmsh beside the scene, MSH 2.2 or 4.1 ASCII; sides: its physical curves, in space surfaces; with body"},
       {"type", "string"},
       {"examples", {"two_half_disks.msh"}}};
-  properties["body"] = {{"description", "beside gmsh: the physical name of a surface in the file"},
-                        {"type", "string"},
-                        {"examples", {"upper"}}};
-  properties["split"] = {{"description",
-                          "beside gmsh: how often every element is split into four; corners stay, sides keep the shape "
-                          "that their elements give them"},
-                         {"title", "a whole number >= 0"},
-                         {"type", "integer"},
-                         {"minimum", 0},
-                         {"default", 0},
-                         {"examples", {1}}};
+  properties["body"] = {
+      {"description", "beside gmsh: the physical name of a surface, in space of a volume, in the file"},
+      {"type", "string"},
+      {"examples", {"upper"}}};
+  properties["split"] = {
+      {"description",
+       "beside gmsh: how often every element is split into four, in space eight; corners stay, sides keep "
+       "the shape that their elements give them"},
+      {"title", "a whole number >= 0"},
+      {"type", "integer"},
+      {"minimum", 0},
+      {"default", 0},
+      {"examples", {1}}};
   one.push_back({{"required", {"gmsh", "body"}}});
   return {{"type", "object"},
           {"title", "one of the following"},

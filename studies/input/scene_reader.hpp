@@ -31,8 +31,9 @@ struct MeshFile {
   ImportResult content;
   std::string fingerprint;
 };
-/// By path. The scenes of a study share one, so that a mesh file is read once.
-using MeshFiles = std::map<std::string, MeshFile>;
+/// By path, and the dimension of the space that it is read for. The scenes of a study share one, so that a mesh file is
+/// read once.
+using MeshFiles = std::map<std::pair<std::string, int>, MeshFile>;
 
 /// A valid scene file with all that it asks for.
 struct Input {

@@ -92,9 +92,12 @@ std::vector<Broken> broken_solid() {
       {"solid_element_of_the_plane", s, R"("H8")", R"(@"Q4")", "/bodies/block/element", "H8, H8_mean_dilatation or T4"},
       {"solid_mesh_of_the_plane", s, R"({"box": {"min": [0, 0, 0], "max": [4, 2, 2], "cells": [4, 2, 2]}})",
        R"({@"half_disk": {"center": [0, 0], "radius": 1, "cells": [4, 4]}})", "/bodies/block/mesh/half_disk",
-       "allowed: box, extruded, point, line, arc"},
+       "allowed: box, half_ball, extruded, point, line, arc, gmsh"},
       {"solid_cells_of_the_plane", s, R"([4, 2, 2]}})", R"(@[4, 2]}})", "/bodies/block/mesh/box/cells",
        "an array of 3 whole numbers >= 1"},
+      {"half_ball_in_the_plane", finite_scene, R"({"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}})",
+       R"(@{"half_ball": {"center": [0, 0, 1], "radius": 1, "cells": [4, 4]}})", "/bodies/block/mesh",
+       "needs the space solid"},
       {"extruded_in_the_plane", finite_scene, R"({"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}})",
        R"(@{"extruded": {"mesh": {"box": {"min": [0, 0], "max": [1, 1], "cells": [1, 1]}}, "from": 0, "to": 1,
                         "cells": 1}})",
@@ -651,6 +654,20 @@ TEST(SceneFaults, ReportsFaultsOfAMeshFileWithTheirOwnPlace) {
   ASSERT_EQ(diagnostics.error_count(), 1u) << diagnostics.text();
   EXPECT_THAT(diagnostics.text(), testing::StartsWith(path.string() + ":2:1: "));
   std::filesystem::remove(path);
+}
+
+TEST(SceneFaults, RefusesAMeshFileOfTheOtherSpace) {
+  const char* const block = R"({"box": {"min": [0, 0, 0], "max": [4, 2, 2], "cells": [4, 2, 2]}})";
+  const std::string disk = R"({"gmsh": "../../studies/meshes/half_disk_coarse.msh", "body": "disk"})",
+                    ball = R"({"gmsh": "../support/meshes/solids_22.msh", "body": "ball"})";
+  for (const auto& [text, part] :
+       {std::pair{edited(solid_scene, block, disk), "half_disk_coarse.msh:1:1: no element is"},
+        {edited(finite_scene, box, ball), R"("space": "solid" takes this mesh)"}}) {
+    Diagnostics diagnostics;
+    EXPECT_FALSE(read_text(text, diagnostics).has_value());
+    ASSERT_EQ(diagnostics.error_count(), 1u) << diagnostics.text();
+    EXPECT_THAT(diagnostics.text(), HasSubstr(part));
+  }
 }
 
 TEST(SceneFaults, RefusesAnImportedMeshWithAnInvertedElement) {

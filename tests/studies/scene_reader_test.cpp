@@ -282,6 +282,24 @@ TEST(SceneReader, ReadsAnImportedMeshBesideTheSceneFile) {
   EXPECT_EQ(input.mesh_fingerprints.at("../studies/../../studies/meshes/half_disk_coarse.msh").size(), 16u);
 }
 
+TEST(SceneReader, ReadsAnImportedMeshInSpaceAndSplitsIt) {
+  const std::string scene = R"({"space": "solid", "bodies": {
+      "ball": {"mesh": {"gmsh": "../support/meshes/solids_22.msh", "body": "ball", "split": 1},
+               "material": {"linear_elastic": {"E": 1, "nu": 0}}, "element": "T4"},
+      "block": {"mesh": {"gmsh": "../support/meshes/solids_41.msh", "body": "block"},
+                "material": {"linear_elastic": {"E": 1, "nu": 0}}, "element": "H8_mean_dilatation"}},
+      "supports": [{"on": "ball.sphere", "move": {"x": 0, "y": 0, "z": 0}},
+                   {"on": "block.edge", "move": {"x": 0, "y": 0, "z": 0}}],
+      "time": {"end": 1, "steps": 1}, "method": {"penalty": {}}})";
+  const Input input = valid(scene);
+  const auto& ball = std::get<ImportedMesh>(input.scene.bodies.at(0).mesh);
+  EXPECT_EQ(ball.mesh.element_count(), 8 * 78);
+  EXPECT_EQ(ball.mesh.sides.at("sphere").facets.size(), 4u * 78);
+  Diagnostics diagnostics;
+  EXPECT_FALSE(read_text(edited(scene, R"("split": 1)", R"("split": 5)"), diagnostics));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("is 5; must be a whole number from 0 to 4"));
+}
+
 TEST(SceneReader, ReadsTheScenesThatAreShipped) {
   int read = 0;
   for (const auto& entry : std::filesystem::directory_iterator(STICKSLIP_SOURCE_DIR "/studies/scenes")) {

@@ -260,7 +260,7 @@ TEST(MshReader, SaysWhereAndWhatIsWrongWithABrokenFile) {
       {"30 1 1 0", "500 1 1 0", "13:1", "node 500 appears twice"},
       {"10 500 30", "10 500 31", "20:18", "element 2 has node 31"},
       {"2 2 2 9 1 10 500 30", "2 10 2 9 1 10 500 30 1 1 1 1 1 1", "20:3", "type 10 (9-node quadrangle)"},
-      {"2 2 2 9 1 10 500 30", "2 4 2 9 1 10 500 30 4", "20:3", "type 4 (4-node tetrahedron)"},
+      {"2 2 2 9 1 10 500 30", "2 4 2 9 1 10 500 30 4", "20:1", "element 2 is of a mesh in space"},
       {"3 2 2 9 1 10 30 4", "3 3 2 9 1 10 500 30 4", "21:1", "mixes elements of unlike kinds, from element 3"},
       {"10 30 4\n", "10 4 30\n", "21:1", "element 3 of body \"plate\" is turned against the others"},
       {"10 30 4\n", "10 30 10\n", "21:1", "element 3 of body \"plate\" is degenerate"},

@@ -2,15 +2,13 @@
 /// fit together, and have sides that face outward.
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <map>
 #include <set>
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/quality.hpp"
 #include "core/mesh/sides.hpp"
-#include "core/solids/continuum.hpp"
-#include "core/solids/edges.hpp"
+#include "tests/support/volumes.hpp"
 
 namespace stickslip::solid_meshes_test {
 namespace {
@@ -27,26 +25,10 @@ Made make(const MeshDescription& description, const std::string& element) {
   return {mesh, make_points<double>(description, mesh, Numbers<double>{})};
 }
 
-double volume(const Made& made) {
-  double sum = 0;
-  with_shape(made.mesh.shape, [&]<class Shape>(Shape) {
-    if constexpr (Shape::dimension == 3)
-      for (int e = 0; e < made.mesh.element_count(); ++e) {
-        Nodal<double, Shape> X;
-        for (int a = 0; a < Shape::nodes; ++a) X.col(a) = made.points.col(made.mesh.connectivity[e * Shape::nodes + a]);
-        for (const auto& point : Shape::quadrature()) sum += Gradient<double, Shape>(point, X).volume;
-      }
-  });
-  return sum;
-}
+double volume(const Made& made) { return volume(made.mesh, made.points); }
 
 /// The vector area of a side, out of the body.
-Vec<double, 3> outward(const Made& made, const Side& side) {
-  Vec<double, 3> sum = Vec<double, 3>::Zero();
-  for (const auto& facet : side.facets)
-    for_each_side_point(made.points, facet, Depth<double>{}, [&](const auto&, const auto& out, double) { sum += out; });
-  return sum;
-}
+Vec<double, 3> outward(const Made& made, const Side& side) { return vector_area(made.points, side); }
 
 /// Every face of an element is one of exactly two, turned the other way, or of the boundary; the boundary is closed.
 void expect_fits_together(const Made& made) {
@@ -114,10 +96,7 @@ TEST(SolidMeshes, ExtrudedOnesHaveTheSidesOfThePlaneAndTwoEnds) {
     expect_fits_together(made);
     for (const char* name : {"inner", "outer", "front", "back"}) EXPECT_EQ(made.mesh.sides.count(name), 1u) << name;
     EXPECT_LE((outward(made, made.mesh.sides.at("back")) - Vec<double, 3>(0, 0, polygon)).norm(), 1e-12);
-    double area = 0;
-    for (const auto& facet : made.mesh.sides.at("outer").facets)
-      for (const double share : side_shares(made.points, facet, Depth<double>{})) area += share;
-    EXPECT_NEAR(area, 3 * 48 * 2 * 2 * std::sin(pi / 48), 1e-11);
+    EXPECT_NEAR(area(made.points, made.mesh.sides.at("outer")), 3 * 48 * 2 * 2 * std::sin(pi / 48), 1e-11);
   }
 }
 

@@ -1,0 +1,292 @@
+/// Bodies in space from files of Gmsh: their elements, their sides, and every fault where it is.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "core/mesh/generators.hpp"
+#include "core/mesh/msh_reader.hpp"
+#include "core/mesh/quality.hpp"
+#include "core/mesh/sides.hpp"
+#include "core/mesh/split.hpp"
+#include "tests/support/volumes.hpp"
+
+namespace stickslip::msh_solids_test {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+ImportResult read(const std::string& text, int dimension = 3) {
+  std::istringstream stream(text);
+  return read_msh(stream, "mesh.msh", dimension);
+}
+
+std::string content(const char* version) {
+  std::ifstream file(std::string(STICKSLIP_SOURCE_DIR "/tests/support/meshes/solids_") + version + ".msh");
+  EXPECT_TRUE(file.good());
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(MshSolids, AreTheSameFromBothVersions) {
+  const ImportResult a = read(content("22")), b = read(content("41"));
+  ASSERT_TRUE(a.errors.empty()) << a.errors.front();
+  ASSERT_TRUE(b.errors.empty()) << b.errors.front();
+  EXPECT_TRUE(a.notes.empty() && b.notes.empty());
+  ASSERT_EQ(a.bodies.size(), 3u);
+  ASSERT_EQ(b.bodies.size(), 3u);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(a.bodies[i].body, b.bodies[i].body);
+    EXPECT_EQ(a.bodies[i].points, b.bodies[i].points);
+    EXPECT_EQ(a.bodies[i].mesh.connectivity, b.bodies[i].mesh.connectivity);
+    ASSERT_EQ(a.bodies[i].mesh.sides.size(), b.bodies[i].mesh.sides.size());
+    for (const auto& [name, side] : a.bodies[i].mesh.sides) {
+      EXPECT_EQ(side.nodes, b.bodies[i].mesh.sides.at(name).nodes) << name;
+      EXPECT_EQ(side.facets, b.bodies[i].mesh.sides.at(name).facets) << name;
+    }
+  }
+}
+
+TEST(MshSolids, FillTheirVolumesAndHaveSidesThatFaceOutward) {
+  const ImportResult result = read(content("22"));
+  const ImportedMesh &block = result.bodies.at(0), &cylinder = result.bodies.at(1), &ball = result.bodies.at(2);
+  EXPECT_EQ(block.mesh.shape, ElementShape::hex8);
+  EXPECT_EQ(block.mesh.element_count(), 16);
+  EXPECT_EQ(block.mesh.node_count, 5 * 3 * 3);
+  EXPECT_NEAR(volume(block.mesh, block.points), 2, 1e-12);  // as Gmsh writes coordinates
+  EXPECT_EQ(ball.mesh.shape, ElementShape::tet4);
+  for (const ImportedMesh* body : {&block, &cylinder, &ball}) {
+    EXPECT_EQ(body->mesh.dimension, 3);
+    EXPECT_FALSE(first_inverted_element(body->mesh, body->points));
+    EXPECT_LE(vector_area(body->points, boundary_of(body->mesh)).norm(), 1e-12) << body->body;  // it is closed
+  }
+  // the vector area of the sides: a unit square, a polygon in a circle
+  EXPECT_LE((vector_area(block.points, block.mesh.sides.at("left")) - Vec<double, 3>(-1, 0, 0)).norm(), 1e-12);
+  const Vec<double, 3> foot = vector_area(cylinder.points, cylinder.mesh.sides.at("foot"));
+  EXPECT_NEAR(foot[2], -pi / 4, 0.15);
+  EXPECT_LE(foot.head<2>().norm(), 1e-12);
+  for (const auto& facet : cylinder.mesh.sides.at("mantle").facets) {
+    Vec<double, 3> middle = Vec<double, 3>(-4, 0, -0.5);
+    for (const int node : facet) middle += cylinder.points.col(node) / 3;
+    EXPECT_GT(vector_area(cylinder.points, {{}, {facet}}).dot(Vec<double, 3>(middle[0], middle[1], 0)), 0);
+  }
+  EXPECT_EQ(ball.mesh.sides.at("sphere").facets.size(), boundary_of(ball.mesh).facets.size());
+  for (const auto& facet : ball.mesh.sides.at("sphere").facets)
+    EXPECT_GT(vector_area(ball.points, {{}, {facet}}).dot(ball.points.col(facet[0]) - Vec<double, 3>(7, 0, 1)), 0);
+}
+
+TEST(MshSolids, HaveASideInsideAsTheFileDirectsItAndCurvesAndPointsAsNodes) {
+  const ImportResult result = read(content("41"));
+  const ImportedMesh& block = result.bodies.at(0);
+  const Side &inside = block.mesh.sides.at("inside"), &edge = block.mesh.sides.at("edge");
+  EXPECT_EQ(inside.facets.size(), 4u);
+  EXPECT_EQ(inside.nodes.size(), 9u);
+  EXPECT_NEAR(std::abs(vector_area(block.points, inside)[0]), 1, 1e-12);
+  EXPECT_EQ(edge.nodes.size(), 3u);
+  EXPECT_TRUE(edge.facets.empty());
+  EXPECT_EQ(block.points.col(edge.nodes[1]), (Vec<double, 3>(0, 0.5, 0)));  // from one end to the other
+  EXPECT_EQ(block.mesh.sides.at("corner").nodes.size(), 1u);
+  EXPECT_EQ(block.mesh.sides.count("foot"), 0u);
+}
+
+/// Two cubes side by side along x, a face, an edge and a point, in MSH 2.2, for edits by hand.
+const std::string cubes = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+4
+0 4 "corner"
+1 1 "edge"
+2 2 "bottom"
+3 3 "block"
+$EndPhysicalNames
+$Nodes
+12
+1 0 0 0
+2 1 0 0
+3 2 0 0
+4 0 1 0
+5 1 1 0
+6 2 1 0
+7 0 0 1
+8 1 0 1
+9 2 0 1
+10 0 1 1
+11 1 1 1
+12 2 1 1
+$EndNodes
+$Elements
+6
+1 15 2 4 1 1
+2 1 2 1 1 1 2
+3 3 2 2 1 1 2 5 4
+4 3 2 2 1 2 3 6 5
+5 5 2 3 1 1 2 5 4 7 8 11 10
+6 5 2 3 1 2 3 6 5 8 9 12 11
+$EndElements
+)";
+
+TEST(MshSolids, TurnFacesOfAFileOutwardAndABodyThatIsLeftHanded) {
+  const ImportResult right = read(cubes);
+  ASSERT_TRUE(right.errors.empty()) << right.errors.front();
+  const Mesh& mesh = right.bodies[0].mesh;
+  const std::set<std::vector<int>> facets{{0, 3, 4, 1}, {1, 4, 5, 2}};  // in the file they look into the body
+  EXPECT_EQ(std::set(mesh.sides.at("bottom").facets.begin(), mesh.sides.at("bottom").facets.end()), facets);
+  std::string text = replaced(cubes, "1 1 2 5 4 7 8 11 10", "1 7 8 11 10 1 2 5 4");
+  text = replaced(text, "1 2 3 6 5 8 9 12 11", "1 8 9 12 11 2 3 6 5");
+  const ImportResult left = read(text);
+  ASSERT_TRUE(left.errors.empty()) << left.errors.front();
+  EXPECT_EQ(left.bodies[0].mesh.connectivity, mesh.connectivity);
+}
+
+struct Broken {
+  std::string from, to;     // edit of the small file
+  std::string line_column;  // where the fault is
+  std::string part;         // of the message
+};
+
+TEST(MshSolids, SayWhereAndWhatIsWrong) {
+  const std::string six = "6 5 2 3 1 2 3 6 5 8 9 12 11";
+  const std::vector<Broken> cases = {
+      {six, "6 4 2 3 1 2 3 6 8", "33:1", "body \"block\" mixes elements of unlike kinds, from element 6"},
+      {six, "6 5 2 3 1 8 9 12 11 2 3 6 5", "33:1", "element 6 of body \"block\" is turned against the others"},
+      {six, "6 5 2 3 1 2 3 6 5 8 9 12 2", "33:1", "element 6 of body \"block\" is degenerate"},
+      {"12 2 1 1", "12 1.2 0.2 0.2", "33:1", "element 6 of body \"block\" is degenerate: a corner is flat or turns"},
+      {"9 2 0 1", "9 2 0 inf", "21:7", "not finite"},
+      {six, "6 6 2 3 1 2 3 6 8 9 12", "33:3", "type 6 (6-node prism), which is not read; plane bodies of 3- or"},
+      {six, "6 11 2 3 1 2 3 6 8 9 12 1 1 1 1", "33:3", "bodies in space of 4-node tetrahedra or 8-node hexahedra"},
+      {"$Elements\n6", "$Elements\n7\n7 5 2 3 1 2 5 4 1 8 11 10 7", "33:1",
+       "element 5 of body \"block\" has the same nodes as element 7 of line 28"},
+      {"$Elements\n6", "$Elements\n7\n7 5 2 3 1 1 3 6 4 7 9 12 10", "33:1",
+       "element 5 of body \"block\" overlaps element 7 of line 28"},
+      {"$Elements\n6", "$Elements\n7\n7 3 2 2 1 5 4 1 2", "31:1",
+       "element 3 of physical surface \"bottom\" has the same nodes as element 7 of line 28"},
+      {"$Elements\n6", "$Elements\n7\n7 1 2 1 1 2 1", "30:1",
+       "element 2 of physical curve \"edge\" has the same nodes as element 7"},
+      {"3 3 2 2 1 1 2 5 4", "3 3 2 2 1 1 2 5 7", "30:1", "element 3 of physical surface \"bottom\" is no face, edge"},
+      {"3 3 2 2 1 1 2 5 4", "3 2 2 2 1 1 2 5", "30:1", "element 3 of physical surface \"bottom\" is no face, edge"},
+      {"2 1 2 1 1 1 2", "2 1 2 2 1 1 3", "", ""},  // wholly off the body: a note
+      {"1 1 \"edge\"", "1 1 \"bottom\"", "30:1", "two physical groups on body \"block\" have the name \"bottom\""},
+      {"3 3 \"block\"", "3 3 \"block", "9:5", "not closed"},
+  };
+  for (const Broken& broken : cases) {
+    const ImportResult result = read(replaced(cubes, broken.from, broken.to));
+    if (broken.line_column.empty()) {
+      EXPECT_TRUE(result.errors.empty()) << broken.to;
+      EXPECT_EQ(result.notes, std::vector<std::string>{"physical curve \"2\" is not on a body"});
+      continue;
+    }
+    ASSERT_FALSE(result.errors.empty()) << broken.to;
+    const std::string& error = result.errors.front();
+    EXPECT_EQ(error.rfind("mesh.msh:" + broken.line_column + ": ", 0), 0u) << broken.to << "\n" << error;
+    EXPECT_NE(error.find(broken.part), std::string::npos) << broken.to << "\n" << error;
+  }
+}
+
+TEST(MshSolids, RefuseAFileOfTheOtherSpaceAndOneWithoutABody) {
+  const auto only_error = [](const ImportResult& result) {
+    EXPECT_EQ(result.errors.size(), 1u);
+    return result.errors.empty() ? "" : result.errors[0];
+  };
+  std::string error = only_error(read(cubes, 2));
+  EXPECT_EQ(error.rfind("mesh.msh:32:1: element 5 is of a mesh in space", 0), 0u) << error;
+  EXPECT_NE(error.find("\"space\": \"solid\" takes this mesh"), std::string::npos) << error;
+  const auto end = cubes.find("5 5 2 3");
+  const std::string faces = replaced(cubes.substr(0, end) + cubes.substr(cubes.find("$EndElements")), "s\n6", "s\n4");
+  error = only_error(read(faces));
+  EXPECT_NE(error.find("give its volume a physical name and mesh it"), std::string::npos) << error;
+  EXPECT_TRUE(read(faces, 2).errors.empty());
+  error = only_error(read(replaced(replaced(cubes, "5 5 2 3", "5 5 2 0"), "6 5 2 3", "6 5 2 0")));
+  EXPECT_NE(
+      error.find("2 solid elements in no physical volume and the physical groups: point \"corner\", curve \"edge\", "
+                 "surface \"bottom\""),
+      std::string::npos)
+      << error;
+  error = mesh_fault(read(cubes).bodies.at(0), "", 2);
+  EXPECT_NE(error.find("body block fills space"), std::string::npos) << error;
+}
+
+TEST(MshSolids, NoteNodesAtOnePlaceAndRefuseElementsWithoutDigits) {
+  const std::string apart =
+      replaced(replaced(cubes, "$Nodes\n12", "$Nodes\n13\n13 1 0 0"), "1 2 3 6 5 8", "1 13 3 6 5 8");
+  const ImportResult slit = read(replaced(apart, "4 3 2 2 1 2 3 6 5\n", "4 3 2 2 1 13 3 6 5\n"));
+  ASSERT_TRUE(slit.errors.empty()) << slit.errors[0];
+  ASSERT_EQ(slit.notes.size(), 1u);
+  EXPECT_NE(slit.notes[0].find("nodes 13 and 2 of body \"block\" are at one place"), std::string::npos)
+      << slit.notes[0];
+  std::string thin = cubes;
+  for (const char* node : {"3 2 0 0", "6 2 1 0", "9 2 0 1", "12 2 1 1"}) {
+    const std::string to = std::string(node).replace(std::string(node).find(" 2 "), 3, " 1.00000000000004 ");
+    thin = replaced(thin, std::string("\n") + node, "\n" + to);
+  }
+  const ImportResult result = read(thin);
+  ASSERT_EQ(result.errors.size(), 1u);
+  EXPECT_NE(result.errors[0].find("element 6 of body \"block\" is 3.9968e-14 thick"), std::string::npos)
+      << result.errors[0];
+}
+
+TEST(MshSolids, TakeTheElementsOfTheFileAlone) {
+  const ImportResult result = read(content("22"));
+  for (const char* element : {"", "H8", "H8_mean_dilatation"}) EXPECT_EQ(mesh_fault(result.bodies[0], element, 3), "");
+  EXPECT_EQ(mesh_fault(result.bodies[2], "T4", 3), "");
+  EXPECT_EQ(mesh_fault(result.bodies[0], "T4", 3), "body block is made of H8, not T4");
+  EXPECT_EQ(mesh_fault(result.bodies[2], "H8_mean_dilatation", 3), "body ball is made of T4, not H8_mean_dilatation");
+}
+
+TEST(MshSolids, SurviveAFileCutOffAnywhereAndAnyFlippedBit) {
+  for (const char* version : {"22", "41"}) {
+    const std::string whole = content(version);
+    for (std::size_t length = 0; length < whole.find("$EndElements") + 12; length += 997)
+      EXPECT_FALSE(read(whole.substr(0, length)).errors.empty()) << version << " cut at " << length;
+  }
+  int refused = 0;
+  for (std::size_t at = 0; at < cubes.size(); ++at) {
+    std::string text = cubes;
+    text[at] ^= static_cast<char>(1 << at % 8);
+    const ImportResult result = read(text);
+    refused += !result.errors.empty();
+    for (const ImportedMesh& body : result.bodies)  // whatever it understood can be used
+      EXPECT_FALSE(first_inverted_element(body.mesh, body.points)) << "byte " << at;
+  }
+  EXPECT_GT(refused, static_cast<int>(cubes.size()) / 4);
+}
+
+TEST(MshSolids, SplitIntoEightOfTheSameRegion) {
+  const ImportResult result = read(content("22"));
+  for (const ImportedMesh& coarse : result.bodies) {
+    const ImportedMesh fine = split(coarse);
+    ASSERT_EQ(fine.mesh.element_count(), 8 * coarse.mesh.element_count());
+    ASSERT_EQ(fine.points.cols(), fine.mesh.node_count);
+    EXPECT_EQ(fine.points.leftCols(coarse.mesh.node_count), coarse.points);
+    EXPECT_FALSE(first_inverted_element(fine.mesh, fine.points));
+    EXPECT_NEAR(volume(fine.mesh, fine.points), volume(coarse.mesh, coarse.points), 1e-12);
+    EXPECT_EQ(boundary_of(fine.mesh).facets.size(), 4 * boundary_of(coarse.mesh).facets.size());  // it fits together
+    EXPECT_EQ(std::set(fine.mesh.connectivity.begin(), fine.mesh.connectivity.end()).size(),
+              static_cast<std::size_t>(fine.mesh.node_count));
+    for (const auto& [name, side] : coarse.mesh.sides) {
+      const Side& of = fine.mesh.sides.at(name);
+      EXPECT_EQ(of.facets.size(), 4 * side.facets.size()) << name;
+      EXPECT_LE((vector_area(fine.points, of) - vector_area(coarse.points, side)).norm(), 1e-12) << name;
+      const std::set<int> nodes(of.nodes.begin(), of.nodes.end());
+      for (const int node : side.nodes) EXPECT_EQ(nodes.count(node), 1u) << name;
+    }
+  }
+  const Side edge = split(result.bodies[0]).mesh.sides.at("edge");
+  EXPECT_EQ(edge.nodes.size(), 5u);
+  EXPECT_EQ(split(result.bodies[0]).mesh.sides.at("corner").nodes.size(), 1u);
+  // of tetrahedra, split over and over, the shape does not degrade
+  ImportedMesh ball = result.bodies[2];
+  const double first = worst_corner_in_space(ball.mesh, ball.points);
+  for (int times = 0; times < 3; ++times) ball = split(ball);
+  EXPECT_GT(worst_corner_in_space(ball.mesh, ball.points), 0.5 * first);
+  EXPECT_LT(volume(ball.mesh, ball.points), 4 * pi / 3);
+}
+
+}  // namespace
+}  // namespace stickslip::msh_solids_test
