@@ -125,11 +125,6 @@ const Page = (() => {
     byId('verdict').textContent = '';
     byId('scene-title').textContent = answer.document.title ?? (lesson ? say(lesson.id + '.scene') : source.path);
     Charts.clear(byId('chart'));
-    Lessons.draw(lesson, State.predicted, (predicted) => {
-      State.predicted = predicted;
-      State.answered = true;
-      show_answered();
-    });
     Editor.set(source.text);
     byId('arrow').hidden = true;
     byId('picture').replaceChildren();
@@ -138,8 +133,13 @@ const Page = (() => {
     Panel.draw_controls(byId('controls'), State.scene, changed);
     Panel.show_values(byId('controls'), State.scene);
     show_switches();
-    show_answered();
     Ask.solve();
+    show_answered();
+    Lessons.draw(lesson, State.predicted, (predicted) => {
+      State.predicted = predicted;
+      State.answered = true;
+      show_answered();
+    });
   }
 
   /** Nothing can be moved before the prediction is made. */

@@ -26,7 +26,7 @@ FOUND = WAIT + """
   await waiting(() => State.reference.answer);
   if (derivative) await waiting(() => methods.every((method) => State.results[method].of === State.shown.parameter));
   if (sweep) {
-    if (!State.sweeping && !State.sweep.length) click('#sweep');
+    if (!State.scene.lesson.sweep && !State.sweep.length) click('#sweep');
     await waiting(() => !State.sweeping);
   }
   if (State.scene.lesson.beside) await waiting(() => State.beside);
