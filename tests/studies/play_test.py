@@ -91,6 +91,7 @@ NEXT = WAIT + """
   click('.next');
   await until(() => lesson() === 'cylinders');
   const next = lesson();
+  await until(() => location.hash.includes('response='));  // once the page has written its address, nothing ends the way back
   history.back();
   await until(() => lesson() === 'loop');
   return {next, back: lesson(), words: !document.getElementById('see').hidden};
