@@ -164,9 +164,10 @@ EDIT = WAIT + """
   const at = text.value.slice(text.selectionStart, text.selectionStart + 9);
   type(whole.replace('"friction": 0.3', '"friction": 0.2'));
   await until(() => !document.getElementById('run').disabled);
+  const former = document.querySelector('#chart svg');
   click('#run');
   await until(() => document.getElementById('lesson').value === '');
-  const cleared = !document.querySelector('#chart svg');
+  const cleared = !former.isConnected;
   await settled();
   await pause(900);
   return {told, off, at, cleared, focus: document.activeElement.id, columns: columns(), hash: location.hash.length, commands: await commands()};
