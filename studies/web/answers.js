@@ -71,8 +71,17 @@ const Answers = (() => {
 
   const what = () =>
       State.shown.derivative ? `d ${State.shown.response} / d ${State.shown.parameter}` : State.shown.response;
-  const name_with = (method, power) =>
-      say(method) + (power === null ? '' : ' ' + numeral(Number((10 ** power).toPrecision(3)), 3));
+  const knob_words = (power) => numeral(Number((10 ** power).toPrecision(3)), 3);
+  const name_with = (method, power) => say(method) + (power === null ? '' : ' ' + knob_words(power));
 
-  return {last_step, judged, response_of, error_of, point_of, is_stale, error_words, what, name_with};
+  /** The pressure of two rings of one material that are pressed into each other, after Lamé. */
+  function lame(document) {
+    const [inner, outer] = ['inner', 'outer'].map((name) => document.bodies[name]);
+    const {E, nu} = inner.material.linear_elastic, R = inner.mesh.ring.outer, Ri = inner.mesh.ring.inner,
+          Ro = outer.mesh.ring.outer;
+    const ring = (a, b) => (b * b + a * a) / (b * b - a * a);
+    return -document.contacts.fit.offset / R * E / (1 - nu * nu) / (ring(R, Ro) + ring(Ri, R));
+  }
+
+  return {last_step, judged, response_of, error_of, point_of, is_stale, error_words, what, knob_words, name_with, lame};
 })();

@@ -1,5 +1,5 @@
 'use strict';
-/** What the solver is asked: the three methods, their reference, runs beside them, a sweep. */
+/** What the solver is asked: the three methods, their reference, runs beside them and for comparison, a sweep. */
 const Ask = (() => {
   const {say} = Words;
   const METHODS = Scenes.METHODS, REFERENCE = 10;  // the scale of the monolithic method that errors are against
@@ -30,7 +30,22 @@ const Ask = (() => {
             if (got) take(method, got, now, key);
           });
     }
+    solve_beside();
     Show.after_change();
+  }
+
+  /** A lesson may show the other choice of a control for comparison. */
+  async function solve_beside() {
+    const control = State.scene.controls[State.scene.lesson?.beside], now = State.version;
+    State.beside = null;
+    if (!control) return;
+    const other = 1 - control.value, method = 'monolithic_al';
+    const more = Object.entries(control.choices[other]).map(([pointer, value]) => [pointer, JSON.stringify(value)]);
+    const got = await Solver.ask(
+        method, 'beside', request(method, Scenes.knob(State.scene, method), Object.fromEntries(more)));
+    if (!got || State.version !== now) return;
+    State.beside = {name: say('beside', {choice: say(`choice.${control.name}.${other}`)}), answer: got.answer};
+    Show.all();
   }
 
   /** The reference depends on all controls but stiffness and scale. */
@@ -59,7 +74,7 @@ const Ask = (() => {
     Show.all();
     const parameter = State.shown.parameter;
     if (!State.shown.derivative || !parameter || !got.answer.result || asked !== State.version) return;
-    const {step} = Derivative.step_of(got.answer.document, parameter, State.scene.lesson?.difference);
+    const {step} = Derivative.step_of(got.answer.document, parameter, State.scene.lesson?.difference?.[parameter]);
     const run = (name, by) => Solver.ask(
         method, name,
         request(method, Scenes.knob(State.scene, method), Derivative.moved(got.answer.document, parameter, by)));
@@ -72,7 +87,7 @@ const Ask = (() => {
   /** Solves with many stiffnesses and scales, one after the other. */
   async function start_sweep() {
     const [from, to] = State.scene.knob_range, powers = [];
-    for (let power = Math.ceil(from); power <= Math.min(to, 10); ++power) powers.push(power);
+    for (let power = Math.ceil(from); power <= to; ++power) powers.push(power);
     const mine = State.sweeping = {};
     State.sweep = [];
     let done = 0;

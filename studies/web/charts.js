@@ -1,5 +1,5 @@
 'use strict';
-/** The chart below the columns: error against work, a response over the steps, tractions along the contact. */
+/** The chart below the columns: error against work or stiffness, a response over the steps, tractions at the contact. */
 const Charts = (() => {
   const {say, numeral} = Words;
   const SHAPES = {penalty: 'circle', uzawa_al: 'square', monolithic_al: 'triangle-up'};
@@ -15,43 +15,54 @@ const Charts = (() => {
       const script = document.createElement('script');
       script.textContent = document.getElementById('vega').textContent;
       document.head.append(script);
-      vega.expressionFunction('powered', (x) => numeral(x, 3));
+      vega.expressionFunction('powered', numeral);
       done();
     });
     return library;
   }
 
-  const methods = Scenes.METHODS;
+  const methods = Scenes.METHODS, log = {type: 'log', nice: false};
   const by_method = (channel, values) => ({
     field: 'method',
     type: 'nominal',
     legend: null,
     scale: {domain: methods, range: methods.map((method) => values[method])},
   });
-  const axis = (title) => ({title, labelExpr: 'powered(datum.value)', labelOverlap: true, tickCount: 5});
+  const axis = (title, digits = 3) =>
+      ({title, labelExpr: `powered(datum.value, ${digits})`, labelOverlap: true, tickCount: 5});
+  const by_name = (tones) => ({
+    field: 'name',
+    type: 'nominal',
+    legend: {title: null, orient: 'top', symbolOpacity: 1, labelLimit: 400, labelFontSize: 12},
+    scale: {domain: Object.keys(tones), range: Object.values(tones).map((tone) => css('--' + tone))},
+  });
   const kind = (name) => [{filter: `datum.kind === '${name}'`}];
+  const tooltip = {field: 'tip'};
 
-  function cost(titles) {
-    const x = {
-      field: 'x',
-      type: 'quantitative',
-      title: titles.x,
-      scale: {type: 'log', nice: false, padding: 80},
-      axis: axis(titles.x)
-    };
+  /** Digits that tell the ticks of an axis apart; a domain around values that differ by rounding alone. */
+  function extent(rows, field) {
+    const values = rows.map((row) => row[field]), low = Math.min(...values), high = Math.max(...values),
+          size = Math.max(Math.abs(low), Math.abs(high));
+    if (!values.length) return {};
+    if (high - low <= 1e-9 * size) return {domain: [low - 0.1 * size || -1, high + 0.1 * size || 1]};
+    return {digits: Math.max(3, 2 + Math.ceil(Math.log10(size / (high - low))))};
+  }
+
+  /** Errors over work or stiffness. Names stand on two sides, since Uzawa and Monolithic often lie together. */
+  function errors(titles) {
+    const x = {field: 'x', type: 'quantitative', scale: {...log, padding: 80}, axis: axis(titles.x)};
     const y = {
       field: 'y',
       type: 'quantitative',
-      scale: {type: 'log', domain: [GROUND, 10], nice: false, clamp: true},
+      scale: {...log, domain: [GROUND, 10], clamp: true},
       axis: {
         ...axis(titles.y),
         values: [GROUND, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1],
-        labelExpr: `datum.value <= ${2 * GROUND} ? '${say('chart.zero')}' : powered(datum.value)`
+        labelExpr: `datum.value <= ${2 * GROUND} ? '${say('chart.zero')}' : powered(datum.value, 3)`
       }
     };
     const color = by_method('color', colors()), shape = by_method('shape', SHAPES);
-    const tooltip =
-        [{field: 'name', title: say('lesson')}, {field: 'x', title: titles.x}, {field: 'y', title: titles.y}];
+    const on_left = (yes, no) => ({expr: `datum.method === 'monolithic_al' ? ${yes} : ${no}`});
     return [
       {transform: kind('asked'), mark: {type: 'rule', strokeDash: [3, 3]}, encoding: {y}},
       {transform: kind('trail'), mark: {type: 'point', filled: true, size: 14, opacity: 0.35}, encoding: {x, y, color}},
@@ -72,17 +83,29 @@ const Charts = (() => {
       },
       {
         transform: kind('now'),
-        mark: {type: 'text', dx: 10, align: 'left', fontSize: 12},
+        mark: {type: 'text', dx: on_left(-10, 10), align: on_left("'right'", "'left'"), fontSize: 12},
         encoding: {x, y, color, text: {field: 'name'}}
       },
     ];
   }
 
-  function steps(titles) {
-    const x = {field: 'x', type: 'quantitative', scale: {zero: false, nice: false, padding: 12}, axis: axis(titles.x)};
-    const y = {field: 'y', type: 'quantitative', scale: {zero: false, padding: 12}, axis: axis(titles.y)};
-    const color = by_method('color', colors());
+  /** An axis that is not logarithmic. */
+  const plain = (field, title, {digits, domain}, more = {}) => ({
+    field,
+    type: 'quantitative',
+    scale: {zero: false, padding: 12, ...more, ...(domain && {domain, nice: false, padding: 0})},
+    axis: axis(title, digits)
+  });
+
+  function steps(titles, {x: of_x, y: of_y, tones}) {
+    const x = plain('x', titles.x, of_x, {nice: false}), y = plain('y', titles.y, of_y);
+    const color = by_name(tones), shape = by_method('shape', SHAPES);
     return [
+      {
+        transform: kind('beside'),
+        mark: {type: 'line', strokeWidth: 1.2, strokeDash: [4, 3]},
+        encoding: {x, y, color, order: {field: 'order'}}
+      },
       {
         transform: kind('line'),
         mark: {type: 'line', strokeWidth: 2},
@@ -91,36 +114,31 @@ const Charts = (() => {
       {
         transform: kind('line'),
         mark: {type: 'point', filled: false, size: 20},
-        encoding: {x, y, color, shape: by_method('shape', SHAPES)}
+        encoding: {x, y, color, shape, tooltip}
       },
-      {transform: kind('here'), mark: {type: 'point', filled: true, size: 110}, encoding: {x, y, color}},
+      {transform: kind('here'), mark: {type: 'point', filled: true, size: 110}, encoding: {x, y, color, tooltip}},
     ];
   }
 
-  function contact(titles) {
-    const x = {field: 'x', type: 'quantitative', scale: {zero: false, nice: false, padding: 12}, axis: axis(titles.x)};
+  function contact(titles, {x: of_x, tones}) {
+    const x = plain('x', titles.x, of_x, {nice: false});
     const y = {field: 'y', type: 'quantitative', axis: axis(titles.y)};
-    const what = {
-      field: 'what',
-      type: 'nominal',
-      legend: {title: null, orient: 'top-right'},
-      scale: {domain: [say('chart.pressure'), say('chart.shear')], range: ['#5b616b', '#E69F00']}
-    };
+    const color = by_name(tones);
     return [
       {
         transform: kind('exact'),
-        mark: {type: 'line', strokeWidth: 1.2, color: css('--ink')},
-        encoding: {x, y, order: {field: 'order'}, detail: {field: 'what'}}
+        mark: {type: 'line', strokeWidth: 1.2},
+        encoding: {x, y, color, order: {field: 'order'}, detail: {field: 'line'}}
       },
       {
         transform: kind('point'),
         mark: {type: 'line', strokeWidth: 1, strokeDash: [2, 2]},
-        encoding: {x, y, color: what, order: {field: 'order'}, detail: {field: 'line'}}
+        encoding: {x, y, color, order: {field: 'order'}, detail: {field: 'line'}}
       },
       {
         transform: kind('point'),
         mark: {type: 'point', filled: true, size: 40, opacity: 1},
-        encoding: {x, y, color: what}
+        encoding: {x, y, color, tooltip}
       },
     ];
   }
@@ -146,15 +164,30 @@ const Charts = (() => {
     };
   }
 
-  /** Draws rows {kind, x, y, ...} in a view: cost, steps, contact. */
+  /** What is under the pointer, beside it. */
+  const tip = Panel.make('p', {id: 'tip', hidden: ''});
+  function show_tip(handler, event, item, text) {
+    tip.hidden = !text;
+    if (!text) return;
+    tip.textContent = text;
+    document.body.append(tip);
+    tip.style.left = `${Math.min(event.clientX + 14, innerWidth - tip.offsetWidth - 4)}px`;
+    tip.style.top = `${event.clientY + 14}px`;
+  }
+
+  /** Draws rows {kind, x, y, name, ...} in a view: cost, knob, steps, contact. `titles`: of its axes, and short ones. */
   async function draw(place, name, titles, rows) {
     await load();
     const width = place.clientWidth, height = place.clientHeight;
     if (!width || !height) return;
-    const wanted = JSON.stringify([name, titles, width, height, dark.matches]);
+    for (const row of rows)
+      row.tip = `${row.name}: ${titles.short[0]} ${numeral(row.x, 4)}, ${titles.short[1]} ${numeral(row.y, 4)}`;
+    const tones = Object.fromEntries(rows.map((row) => [row.name, row.tone]));
+    const of_rows = name === 'steps' || name === 'contact' ? {x: extent(rows, 'x'), y: extent(rows, 'y'), tones} : {};
+    const wanted = JSON.stringify([name, titles, width, height, dark.matches, of_rows]);
     if (wanted !== key) {
       key = wanted;
-      const layers = {cost, steps, contact}[name](titles);
+      const layers = {cost: errors, knob: errors, steps, contact}[name](titles, of_rows);
       const spec = {
         $schema: 'https://vega.github.io/schema/vega-lite/v6.json',
         width,
@@ -168,16 +201,24 @@ const Charts = (() => {
       view?.finalize();
       view = new vega.View(
           vega.parse(vegaLite.compile(spec, {logger: quiet}).spec),
-          {renderer: 'svg', container: place, logLevel: vega.Error});
+          {renderer: 'svg', container: place, logLevel: vega.Error, tooltip: show_tip});
       await view.runAsync();
     } else {
       await view.data('rows', rows).runAsync();
     }
   }
 
+  /** Takes the chart away: its scene has gone. */
+  function clear(place) {
+    view?.finalize();
+    view = null;
+    key = '';
+    place.replaceChildren();
+  }
+
   dark.addEventListener('change', () => {
     key = '';
   });
 
-  return {draw, GROUND};
+  return {draw, clear, GROUND};
 })();

@@ -3,7 +3,7 @@
 const Editor = (() => {
   const {say, numeral} = Words;
   const byId = (id) => document.getElementById(id);
-  let timer = 0, last = null;
+  let timer = 0, last = null, given = '';
 
   /** Whether a browser should solve a scene of this size. */
   const bears = (size) =>
@@ -48,7 +48,8 @@ const Editor = (() => {
           'p', {class: bears(size) ? 'fine' : 'fault'},
           bears(size) ?
               say('editor.fine',
-                  {...size, displacements: numeral(size.displacements), contact_points: numeral(size.contact_points)}) :
+                  {...size, displacements: numeral(size.displacements), contact_points: numeral(size.contact_points)}) +
+                  (Scenes.is_long(size) ? ' ' + say('editor.slow') : '') :
               too_large(size)));
     return faults.length === 0 && Boolean(size) && bears(size);
   }
@@ -111,6 +112,7 @@ const Editor = (() => {
     byId('open-editor').addEventListener('click', () => {
       open(byId('editor').hidden);
       if (!byId('editor').hidden) {
+        if (byId('text').value === given) set(Scenes.text_of(State.scene));  // as the controls say
         check_now();
         byId('text').focus({preventScroll: true});
       }
@@ -123,7 +125,7 @@ const Editor = (() => {
   }
 
   const set = (text) => {
-    byId('text').value = text;
+    byId('text').value = given = text;
   };
 
   return {start, set, show, check, open, bears, too_large};

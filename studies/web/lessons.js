@@ -12,17 +12,24 @@ const Lessons = (() => {
     return choices;
   };
 
-  /** Shows a lesson's card; `on_answer` is called once a prediction is made, or none is wanted. */
-  function draw(lesson, answered, on_answer) {
-    const asks = lesson && Words.has(lesson.id + '.question');
-    byId('card').hidden = !asks;
-    if (!asks) return;
+  /**
+   * Shows a lesson's card. `predicted`: number of a choice, 'none' if the answer is wanted without one, null if nothing
+   * was chosen yet; `on_answer` gets it once it is there.
+   */
+  function draw(lesson, predicted, on_answer) {
+    byId('card').hidden = !lesson;
+    if (!lesson) return;
     byId('card-title').textContent = say(lesson.id + '.name');
-    byId('question').textContent = say(lesson.id + '.question');
+    byId('question').textContent = say(lesson.id + (asks(lesson) ? '.question' : '.see'));
     const form = byId('prediction'), see = byId('see');
     form.replaceChildren();
-    see.hidden = true;
-    choices_of(lesson).forEach((choice, i) => {
+    form.hidden = !asks(lesson);
+    see.hidden = asks(lesson);
+    byId('card').className = asks(lesson) ? '' : 'intro';
+    see.replaceChildren(next_of(lesson));
+    if (!asks(lesson)) return;
+    const choices = choices_of(lesson);
+    choices.forEach((choice, i) => {
       const input = Panel.make('input', {type: 'radio', name: 'prediction', value: i});
       input.addEventListener('change', () => {
         form.querySelector('.show').disabled = false;
@@ -32,27 +39,39 @@ const Lessons = (() => {
     const show = Panel.make('button', {type: 'submit', class: 'show', disabled: ''}, say('predict.show'));
     const skip = Panel.make('button', {type: 'button', class: 'skip-prediction'}, say('predict.skip'));
     form.append(Panel.make('p', {class: 'buttons'}, show, ' ', skip));
-    const answer = (predicted) => {
-      const right = choices_of(lesson)[lesson.right];
-      const verdict = predicted === null         ? 'predict.none' :
-                      predicted === lesson.right ? 'predict.right' :
-                                                   'predict.wrong';
-      const mark = Panel.make(
-          'p', {class: 'verdict ' + (predicted === lesson.right ? 'right' : 'wrong')},
-          say(verdict, {answer: right.replace(/\.$/, '')}));
-      see.replaceChildren(mark, Panel.make('p', {}, say(lesson.id + '.see')));
+    const answer = (chosen) => {
+      const is_right = chosen === String(lesson.right), plain = (i) => choices[i]?.replace(/\.$/, '');
+      const verdict = is_right ? 'predict.right' : choices[chosen] ? 'predict.wrong' : 'predict.none';
+      see.replaceChildren(
+          Panel.make(
+              'p', {class: 'verdict ' + (is_right ? 'right' : 'wrong')},
+              say(verdict, {answer: plain(lesson.right), choice: plain(chosen)})),
+          Panel.make('p', {}, say(lesson.id + '.see')), next_of(lesson));
+      byId('card').className = 'answered';
       see.hidden = false;
       form.hidden = true;
-      on_answer();
+      on_answer(chosen);
     };
-    form.hidden = false;
+    const answer_now = (chosen) => {
+      answer(chosen);
+      see.focus();
+    };
     form.onsubmit = (event) => {
       event.preventDefault();
       const chosen = form.querySelector('input:checked');
-      if (chosen) answer(Number(chosen.value));
+      if (chosen) answer_now(chosen.value);
     };
-    skip.addEventListener('click', () => answer(null));
-    if (answered) answer(null);
+    skip.addEventListener('click', () => answer_now('none'));
+    if (predicted !== null) answer(predicted);
+  }
+
+  /** A link to the lesson after this one. */
+  function next_of(lesson) {
+    const next = list[list.indexOf(lesson) + 1];
+    return next ? Panel.make(
+                      'a', {class: 'next', href: Link.write({lesson: next.id})},
+                      say('next', {lesson: say(next.id + '.name')})) :
+                  '';
   }
 
   const asks = (lesson) => Boolean(lesson && Words.has(lesson.id + '.question'));

@@ -2,13 +2,14 @@
 /** The page: what it opens, and what its controls change. */
 const Page = (() => {
   const {say} = Words;
-  const METHODS = Scenes.METHODS;
+  const METHODS = Scenes.METHODS, VIEWS = ['cost', 'knob', 'steps', 'contact'];
   const byId = (id) => document.getElementById(id);
   const about = JSON.parse(byId('about').textContent);
 
   async function address() {
     const values = {
       lesson: State.scene.lesson?.id,
+      predicted: State.predicted,
       response: State.shown.response,
       by: State.shown.parameter,
       shown: State.shown.derivative ? 'derivative' : null,
@@ -60,7 +61,7 @@ const Page = (() => {
       input.disabled = !has_derivatives(State.scene.document);
     }
     byId('views').setAttribute('aria-label', say('view'));
-    byId('views').replaceChildren(...['cost', 'steps', 'contact'].map((view) => {
+    byId('views').replaceChildren(...VIEWS.map((view) => {
       const input = Panel.make('input', {type: 'radio', name: 'view', value: view});
       input.checked = view === State.shown.view;
       input.addEventListener('change', () => choose({view}));
@@ -71,6 +72,12 @@ const Page = (() => {
   /** The content of a scene file, which may have comments. */
   const without_comments = (text) => JSON.parse(
       text.replace(/"(?:\\.|[^"\\])*"|\/\/[^\n]*|\/\*[^]*?\*\//g, (part) => part[0] === '"' ? part : ''));
+
+  /** A scene of an address: its own text if it has lines, else one that can be read. */
+  function as_written(text) {
+    const content = without_comments(text);
+    return text.includes('\n') ? text : JSON.stringify(content, null, 1);
+  }
 
   /** Shows a scene: reads it, makes its controls, solves. `given`: of the address. */
   async function open(source, lesson, given = {}) {
@@ -85,7 +92,7 @@ const Page = (() => {
       return;
     }
     State.scene = Scenes.make(source, lesson, answer.document, answer.size);
-    State.scene.every = lesson || Scenes.length_of(answer.size) <= 30000 ? 1 : 0;
+    State.scene.every = lesson || !Scenes.is_long(answer.size) ? 1 : 0;
     const number = (text) => Number.isFinite(Number(text)) ? Number(text) : null;
     if (given.knob !== undefined) State.scene.knob = number(given.knob);
     for (const control of Object.values(State.scene.controls)) {
@@ -100,8 +107,8 @@ const Page = (() => {
       response: among(responses, given.response, lesson?.response),
       parameter: among(parameters, given.by, lesson?.parameter, 'mu'),
       derivative: (given.shown ?? lesson?.shown) === 'derivative' && has_derivatives(answer.document),
-      view: among(['cost', 'steps', 'contact'], given.view, lesson?.view),
-      drawn: among(METHODS, given.drawn, 'monolithic_al'),
+      view: among(VIEWS, given.view, lesson?.view),
+      drawn: among(METHODS, given.drawn, lesson?.drawn, 'monolithic_al'),
       accuracy: number(given.accuracy ?? -3) ?? -3,
       step: null
     };
@@ -110,18 +117,14 @@ const Page = (() => {
     State.trail = [];
     State.sweep = [];
     State.sweeping = null;
+    State.predicted = given.predicted ?? null;
     State.answered = !Lessons.asks(lesson);
     byId('sweep').textContent = say('sweep');
     byId('lesson').value = lesson?.id ?? '';
     byId('accuracy').value = State.shown.accuracy;
-    byId('scene-title').textContent = answer.document.title ?? (lesson ? say(lesson.id + '.name') : source.path);
-    document.body.classList.toggle('unanswered', !State.answered);
-    Lessons.draw(lesson, State.answered, () => {
-      State.answered = true;
-      document.body.classList.remove('unanswered');
-      Show.all();
-      Show.after_change();
-    });
+    byId('verdict').textContent = '';
+    byId('scene-title').textContent = answer.document.title ?? (lesson ? say(lesson.id + '.scene') : source.path);
+    Charts.clear(byId('chart'));
     Editor.set(source.text);
     byId('arrow').hidden = true;
     byId('picture').replaceChildren();
@@ -131,6 +134,22 @@ const Page = (() => {
     Panel.show_values(byId('controls'), State.scene);
     show_switches();
     Ask.solve();
+    show_answered();
+    Lessons.draw(lesson, State.predicted, (predicted) => {
+      State.predicted = predicted;
+      State.answered = true;
+      show_answered();
+    });
+  }
+
+  /** Nothing can be moved before the prediction is made. */
+  function show_answered() {
+    document.body.classList.toggle('unanswered', !State.answered);
+    byId('controls').inert = byId('time').inert = !State.answered;
+    if (!State.answered) return;
+    if (State.scene.lesson?.sweep && !State.sweep.length) Ask.start_sweep();
+    Show.all();
+    Show.after_change();
   }
 
   const open_lesson = (id, given) => {
@@ -144,7 +163,7 @@ const Page = (() => {
     let own = null;
     try {
       if (given.scene) own = await Link.unpack(given.scene);
-      else if (given.json) own = JSON.stringify(JSON.parse(given.json), null, 1);
+      else if (given.json) own = as_written(given.json);
     } catch {
       await open_lesson('play');
       Editor.open(true);
@@ -162,7 +181,9 @@ const Page = (() => {
     const lesson = byId('lesson');
     for (const one of Lessons.list) lesson.append(Panel.make('option', {value: one.id}, say(one.id + '.name')));
     lesson.append(Panel.make('option', {value: '', hidden: ''}, say('editor.title')));
-    lesson.addEventListener('change', () => open_lesson(lesson.value));
+    lesson.addEventListener('change', () => {
+      location.hash = Link.write({lesson: lesson.value});  // opens it, and the way back leads here
+    });
     byId('response').addEventListener('change', (event) => choose({response: event.target.value}));
     byId('parameter').addEventListener('change', (event) => choose({parameter: event.target.value}));
     byId('shown').addEventListener('change', (event) => choose({derivative: event.target.value === 'derivative'}));
@@ -181,7 +202,7 @@ const Page = (() => {
       }
       byId('live').textContent =
           await navigator.clipboard.writeText(url).then(() => say('link.copied'), () => say('link.failed'));
-      byId('copy-link').textContent = byId('live').textContent;
+      byId('copy-link').textContent = say(byId('live').textContent === say('link.copied') ? 'link.done' : 'link.not');
       setTimeout(() => {
         byId('copy-link').textContent = say('link.copy');
       }, 2500);
@@ -192,9 +213,20 @@ const Page = (() => {
     notices.addEventListener('toggle', () => {
       notices.querySelector('pre').textContent = byId('notices').textContent;
     });
+    const meanings = Object.keys(Words.shipped).filter((key) => key.startsWith('what.')).map(Words.explained);
+    byId('meanings').append(
+        ...meanings.flatMap(([term, words]) => [Panel.make('dt', {}, term), Panel.make('dd', {}, words)]));
     byId('footer').append(
         Panel.make('p', {}, say('reference.words')), Panel.make('p', {}, say('footer', about)), notices);
-    Editor.start((source) => open(source, null));
+    Editor.start(async (source) => {
+      try {
+        history.pushState(null, '', location.href);  // the way back leads to what was there before
+      } catch { /* a file:// page in a browser that forbids it */
+      }
+      await open(source, null, {knob: State.scene.knob ?? undefined});
+      byId('scene-title').scrollIntoView();
+      byId('scene-title').focus();
+    });
     setInterval(Show.progress, 250);
     addEventListener('hashchange', open_address);
     document.querySelector('.skip').addEventListener('click', (event) => {

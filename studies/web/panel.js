@@ -13,6 +13,8 @@ const Panel = (() => {
     const own = `load.${scene.lesson?.id}`;
     if (control.name === 'load')
       return Words.has(own) ? say(own) : say(control.factor ? 'control.load.factor' : 'control.load');
+    if (control.name === 'steps' && !control.pointers['/time/steps'])
+      return say(control.pointers['/time/legs/0/1'] ? 'control.steps.first' : 'control.steps.last');
     return control.place ? say('control.place', {name: control.place}) : say('control.' + control.name);
   };
 
@@ -97,21 +99,26 @@ const Panel = (() => {
       place.append(make(
           'section', {class: 'column', 'data-method': method, 'aria-label': say(method)},
           make('h3', {}, make('span', {class: 'dot'}), say(method)), make('p', {class: 'status'}), make('dl'),
-          make('p', {class: 'more'}), make('p', {class: 'progress'}), button,
+          make('p', {class: 'progress'}), button,
           make('label', {class: 'pick'}, pick, ' ' + say('draw'))));
     }
   }
 
   /** Rows [name, text, class] of a column. */
-  function show_column(place, method, status, is_bad, rows, more = '') {
+  function show_column(place, method, status, is_bad, rows) {
     const column = place.querySelector(`[data-method="${method}"]`);
     column.querySelector('.status').textContent = status;
     column.classList.toggle('bad', is_bad);
     column.querySelector('dl').replaceChildren(...rows.flatMap(
         ([name, text, kind = '']) =>
-            [make('dt', {}, name),
+            [make('dt', Words.has('what.' + kind) ? {title: Words.explained('what.' + kind)[1]} : {}, name),
              make('dd', {class: kind + (text.includes(' ') ? ' words' : ''), 'data-value': kind}, text)]));
-    column.querySelector('.more').textContent = more;
+  }
+
+  /** What methods say, {text: [method, ...]}: each text once. */
+  function show_messages(place, messages) {
+    place.replaceChildren(...Object.entries(messages).map(
+        ([text, methods]) => make('p', {}, make('b', {}, methods.join(', ') + ': '), text)));
   }
 
   /** Whether the numbers of a column are those of former controls; returns whether that is new. */
@@ -129,5 +136,15 @@ const Panel = (() => {
     column.querySelector('.stop').hidden = !text;
   }
 
-  return {draw_controls, show_values, draw_columns, show_column, show_stale, show_progress, name_of, make};
+  return {
+    draw_controls,
+    show_values,
+    draw_columns,
+    show_column,
+    show_messages,
+    show_stale,
+    show_progress,
+    name_of,
+    make
+  };
 })();

@@ -1,7 +1,8 @@
 'use strict';
 /** The scene as a drawing: bodies, obstacles, contact points with their states and tractions, and handles. */
 const Picture = (() => {
-  const NS = 'http://www.w3.org/2000/svg', WIDTH = 560, HEIGHT = 300, MARGIN = 26, MASS = 13;  // half a mass
+  const NS = 'http://www.w3.org/2000/svg', WIDTH = 560, HEIGHT = 300, MARGIN = 26;
+  const MASS = 13, REST = 84;  // half a mass, a spring at rest
   const STATES = ['stick', 'slip', 'closed', 'open'];
   const SHADES = [
     '#f4f1de', '#d9e4a8', '#a8d483', '#6cbf80', '#3ba387', '#2a848c', '#31648c', '#3d4287', '#43176a'
@@ -85,7 +86,22 @@ const Picture = (() => {
     const middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
     const tractions = [picture, ...(picture.frames ?? [])].flatMap((step) => step.traction ?? []);
     const strongest = Math.max(0, ...tractions.map((t) => Math.hypot(t[0], t[1])));
-    return {times, scale, middle, low, high, size, strongest, fixed: Boolean(given)};
+    return {times, scale, middle, strongest};
+  }
+
+  /** Whether all of a scene is in the picture. */
+  const holds = (places) => places.map(to_pixels).every(([x, y]) => x >= 0 && x <= WIDTH && y >= 0 && y <= HEIGHT);
+
+  /** Pixels of a traction of 1: the longest arrow has 70, and none that begins in the picture ends beyond. */
+  function pixels_of_traction(points, tractions) {
+    let factor = 70 / frame.strongest;
+    points.forEach(([x, y], p) => {
+      const [tx, ty] = tractions[p];
+      if (x < 0 || x > WIDTH || y < 0 || y > HEIGHT) return;
+      const air = [tx > 0 ? x : WIDTH - x, ty > 0 ? HEIGHT - y : y];
+      factor = Math.min(factor, (air[0] - 3) / Math.abs(tx), (air[1] - 3) / Math.abs(ty));
+    });
+    return factor;
   }
 
   const to_pixels =
@@ -105,6 +121,7 @@ const Picture = (() => {
 
   /** A mark of a state, as in the report. */
   function mark(state, [x, y], size = 1) {
+    if (state === 'unknown') return element('g');
     if (state === 'stick')
       return element(
           'rect', {x: x - 3.5 * size, y: y - 3.5 * size, width: 7 * size, height: 7 * size, class: 'state stick'});
@@ -172,7 +189,11 @@ const Picture = (() => {
     return stands;
   }
 
-  function draw_bodies(picture, places, stands) {
+  /** Where the far end of a spring is drawn: at rest it is beside the mass, on the side that it is pulled to. */
+  const rest_of = (scene) =>
+      (scene.document.supports ?? []).some((support) => support.on?.endsWith('.anchor')) ? REST : -REST;
+
+  function draw_bodies(picture, places, stands, rest) {
     const group = element('g', {class: 'bodies'}), most = Math.max(...picture.von_mises.map((s) => s ?? 0));
     let path = null, shade_of_path = null;  // elements of one shade that follow one another: the nearest comes last
     picture.elements.forEach((nodes, e) => {
@@ -183,12 +204,10 @@ const Picture = (() => {
           group.append(element('polyline', {points: text_of(at), class: 'bar'}));
           return;
         }
-        group.append(draw_spring(
-            plus(to_pixels(at[0]), stands[nodes[0]] ?? [0, 0]), plus(to_pixels(at[1]), stands[nodes[0]] ?? [0, 0])));
-        const [ax, ay] = plus(to_pixels(at[1]), stands[nodes[0]] ?? [0, 0]),
-                   [x, y] = plus(to_pixels(at[0]), stands[nodes[0]] ?? [0, 0]);
+        const [x, y] = plus(to_pixels(at[0]), stands[nodes[0]] ?? [0, 0]),
+                 [ax, ay] = plus(to_pixels(at[1]), plus(stands[nodes[0]] ?? [0, 0], [rest, 0]));
         group.append(
-            element('circle', {cx: ax, cy: ay, r: 4, class: 'anchor'}),
+            draw_spring([x, y], [ax, ay]), element('circle', {cx: ax, cy: ay, r: 4, class: 'anchor'}),
             element('rect', {x: x - MASS, y: y - MASS, width: 2 * MASS, height: 2 * MASS, rx: 3, class: 'mass'}));
         return;
       }
@@ -206,29 +225,36 @@ const Picture = (() => {
     return group;
   }
 
-  /** A place that a control moves: dragged by the pointer, or moved by the arrow keys. */
-  function handle(drag, scene, places, stands, on_move) {
+  /** A place that a control moves: dragged by the pointer, or moved by the arrow keys; none where it moves nothing. */
+  function handle(drag, scene, picture, places, stands, rest, on_move) {
     const control = scene.controls[drag.control], length = 46;
     const span = Math.max(Math.abs(control.from), Math.abs(control.to)) || 1;
     let base = null, tip = null, per_pixel = 0;
     const direction = drag.axis === 0 ? [1, 0] : [0, -1];
     if (drag.kind === 'force') {
-      const mass = plus(to_pixels(places[drag.node]), stands[drag.node] ?? [0, 0]),
-            side = drag.push ? -drag.sign : drag.sign;
-      const along = (way) => [mass[0] + direction[0] * side * way, mass[1] + direction[1] * side * way];
-      base = along(MASS);
+      const is_mass = lumped(picture), edge = is_mass ? MASS : 3;
+      const place = plus(to_pixels(places[drag.node]), stands[drag.node] ?? [0, 0]),
+            start = drag.above ? plus(place, [0, -MASS - 9]) : place, side = drag.push ? -drag.sign : drag.sign;
+      const along = (way) => [start[0] + direction[0] * side * way, start[1] + direction[1] * side * way];
+      base = along(edge);
       tip =
-          along(MASS + 8 + length * Math.abs(control.value) / span);  // where the hand is: behind a push, before a pull
+          along(edge + 8 + length * Math.abs(control.value) / span);  // where the hand is: behind a push, before a pull
       per_pixel = side * span / length;
+    } else if (drag.kind === 'node') {
+      // (After some steps the place is another multiple of the control's number.)
+      const share = control.value === 0 ? 1 : picture.displacement[drag.node][drag.axis] / control.value;
+      if (Math.abs(share) < 0.05) return element('g');
+      tip = plus(to_pixels(places[drag.node]), plus(stands[drag.of] ?? [0, 0], [rest, 0]));
+      per_pixel = 1 / (frame.scale * share);
     } else {
-      const place = drag.kind === 'node' ? places[drag.node] : [...drag.place];
-      if (drag.kind === 'obstacle') place[drag.axis] = control.value;
-      tip = plus(to_pixels(place), drag.kind === 'node' ? stands[drag.of ?? drag.node] ?? [0, 0] : [0, 0]);
+      const place = [...drag.place];
+      place[drag.axis] = control.value;
+      tip = to_pixels(place);
       per_pixel = 1 / frame.scale;
     }
     const group = element('g', {
       class: 'handle ' + drag.kind,
-      tabindex: 0,
+      tabindex: frame.key ? 0 : -1,
       role: 'slider',
       'aria-valuemin': control.from,
       'aria-valuemax': control.to,
@@ -274,23 +300,25 @@ const Picture = (() => {
     });
 
   /**
-   * Draws a scene into a place. `whole`: picture of the answer; `step`: which of its frames; `key`: while it stays,
-   * the window stays too.
+   * Draws a scene into a place. `whole`: picture of the answer; `step`: which of its frames; `key`: whether its handles
+   * can be moved; while it stays, the window stays too if it holds all.
    */
   function draw(place, scene, whole, step, key, words, on_move) {
     const picture = at_step(whole, step);
     if (!frame || frame.scene !== scene || frame.key !== key) frame = {...make_frame(whole, scene), scene, key};
-    frame.strongest = Math.max(frame.strongest, ...(picture.traction ?? []).map((t) => Math.hypot(t[0], t[1])));
     frame.times = magnification(whole, scene);
     const places = picture.points.map(
         (x, n) => [x[0] + frame.times * picture.displacement[n][0], x[1] + frame.times * picture.displacement[n][1]]);
+    if (!moving && !scene.lesson?.window && !holds(places)) frame = {...make_frame(whole, scene), scene, key};
+    frame.strongest = Math.max(frame.strongest, ...(picture.traction ?? []).map((t) => Math.hypot(t[0], t[1])));
     const focused = document.activeElement?.closest('.handle')?.dataset.control;
     const svg = element('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'group', 'aria-label': words});
     const drawing = element('g', {'aria-hidden': 'true'});
     for (const obstacle of picture.obstacles) drawing.append(draw_obstacle(obstacle));
     const stands = lumped(picture) ? stands_of(scene, picture) : {};
-    drawing.append(draw_bodies(picture, places, stands));
-    const longest = 70, arrows = element('g', {class: 'tractions'}), marks = element('g');
+    const rest = rest_of(scene);
+    drawing.append(draw_bodies(picture, places, stands, rest));
+    const arrows = element('g', {class: 'tractions'}), marks = element('g');
     const visible = picture.contact.map((c) => to_pixels(places[c.node]));
     const close =
         visible.length > 1 ?
@@ -300,36 +328,50 @@ const Picture = (() => {
                        median(visible.slice(1).map((p, i) => Math.hypot(p[0] - visible[i][0], p[1] - visible[i][1]))) /
                            9)) :
             1.3;
+    const factor = picture.traction?.length && frame.strongest > 0 ? pixels_of_traction(visible, picture.traction) : 0;
     picture.contact.forEach((c, p) => {
       const t = picture.traction?.[p], at = visible[p];
-      if (t && frame.strongest > 0) {
-        const factor = longest / frame.strongest;
+      if (factor) {
         arrows.append(arrow([at[0] - factor * t[0], at[1] + factor * t[1]], at, {class: 'traction'}));
       }
       marks.append(mark(c.state, at, close));
     });
-    drawing.append(arrows, marks);
+    drawing.append(arrows, marks, draw_scale());
     svg.append(drawing);
-    for (const drag of scene.drags) svg.append(handle(drag, scene, places, stands, on_move));
+    for (const drag of scene.drags) svg.append(handle(drag, scene, picture, places, stands, rest, on_move));
     place.replaceChildren(svg);
     if (focused) place.querySelector(`[data-control="${focused}"]`)?.focus({preventScroll: true});
     return frame.times;
   }
 
+  /** A bar of a round length of the scene. */
+  function draw_scale() {
+    const most = 110 / frame.scale, power = 10 ** Math.floor(Math.log10(most));
+    const length = [5, 2, 1].find((digit) => digit * power <= most) * power, end = 10 + length * frame.scale;
+    return element(
+        'g', {class: 'scale'}, element('path', {d: `M10,${HEIGHT - 14}v6h${end - 10}v-6`}),
+        element('text', {x: end + 6, y: HEIGHT - 8}, Words.numeral(+length.toPrecision(1))));
+  }
+
   const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
-  /** What the marks mean. */
-  function legend(place) {
+  /** What marks and colours mean: those that a picture has. */
+  function legend(place, picture) {
     place.replaceChildren();
-    const names = Words.say('legend').split('|');
+    const names = Words.say('legend').split('|'), held = new Set(picture.contact.map((point) => point.state));
+    const add = (width, drawing, words) => {
+      const svg = element('svg', {width, height: 12, 'aria-hidden': 'true'}, ...drawing);
+      place.append(svg, ' ' + words + '  ');
+    };
     STATES.forEach((state, i) => {
-      const svg = element('svg', {width: 12, height: 12, 'aria-hidden': 'true'});
-      svg.append(mark(state, [6, 6]));
-      place.append(svg, ' ' + names[i] + '  ');
+      if (held.has(state)) add(12, [mark(state, [6, 6])], names[i]);
     });
-    const svg = element('svg', {width: 26, height: 12, 'aria-hidden': 'true'});
-    svg.append(arrow([1, 6], [25, 6], {class: 'traction'}));
-    place.append(svg, ' ' + names[4]);
+    if (picture.traction?.length) add(26, [arrow([1, 6], [25, 6], {class: 'traction'})], names[4]);
+    const most = lumped(picture) ? 0 : Math.max(...picture.von_mises);
+    if (most > 0)
+      add(
+          7 * SHADES.length, SHADES.map((fill, i) => element('rect', {x: 7 * i, y: 1, width: 7, height: 10, fill})),
+          Words.say('legend.stress', {most: Words.numeral(most, 3)}));
   }
 
   return {draw, legend, element, arrow};

@@ -126,6 +126,60 @@ const Scenes = (() => {
     return Object.entries(values).map(([pointer, value]) => `${pointer}=${value}`);
   }
 
+  /** Where values of a scene file are: [from, to] by pointer. The file has no fault; it may have comments. */
+  function spans_of(text) {
+    const spans = {}, tokens = /\s+|\/\/[^\n]*|\/\*[^]*?\*\/|("(?:\\.|[^"\\])*"|[[\]{},:]|[^\s[\]{},:/"]+)/g;
+    let token = null, end = 0;
+    const next = () => {
+      do token = tokens.exec(text);
+      while (token && token[1] === undefined);
+    };
+    const read = (pointer) => {
+      const from = token.index, closing = {'{': '}', '[': ']'}[token[0]];
+      if (closing) {
+        next();
+        for (let i = 0; token[0] !== closing; ++i) {
+          let key = i;
+          if (closing === '}') {
+            key = escaped(JSON.parse(token[0]));
+            next();
+            next();
+          }
+          read(`${pointer}/${key}`);
+          if (token[0] === ',') next();
+        }
+      }
+      end = tokens.lastIndex;
+      spans[pointer] = [from, end];
+      next();
+    };
+    next();
+    read('');
+    return spans;
+  }
+
+  /** The file of a scene with what its controls say. */
+  function text_of(scene) {
+    const spans = spans_of(scene.source.text), edits = overrides(scene).map((one) => {
+      const cut = one.indexOf('=');
+      return {span: spans[one.slice(0, cut)], value: one.slice(cut + 1)};
+    });
+    return edits.filter((edit) => edit.span).sort((a, b) => b.span[0] - a.span[0]).reduce(
+        (text, {span, value}) => text.slice(0, span[0]) + value + text.slice(span[1]), scene.source.text);
+  }
+
+  /** What a response is: its kind, where it is taken, of what. */
+  function meaning(document, name) {
+    const [kind, given] = Object.entries(document.responses?.[name] ?? {})[0] ?? [];
+    if (!kind) return '';
+    const place = given.on ?? given.contact ?? (given.at && `(${given.at.join(', ')})`);
+    const {say, has} = Words, words = has('kind.' + kind) ? say('kind.' + kind) : kind.replaceAll('_', ' ');
+    const more = [given.component, given.take].filter(Boolean).map((one) => ', ' + one).join('');
+    return `${name}: ${words}${place ? ' ' + say('kind.of', {place}) : ''}${more}.`;
+  }
+  const meaning_of_parameter = (document, name) =>
+      Words.say('parameter.is', {name, pointers: Object.keys(Derivative.pointers_of(document, name)).join(', ')});
+
   /** The stiffness or scale of a method; none where it is automatic. */
   const knob = (scene, method, power = scene.knob) =>
       power === null ? [] : [`${knob_of(method)}=${Number((10 ** power).toPrecision(3))}`];
@@ -133,8 +187,25 @@ const Scenes = (() => {
   /** How many displacements a solution has over all steps. */
   const length_of = (size) => size.displacements * Math.max(1, size.steps);
 
+  /** Whether a run may take minutes. */
+  const is_long = (size) => length_of(size) > 30000;
+
   /** What a browser bears: of displacements, and of displacements over all steps. */
   const MOST = {displacements: 20000, length: 400000, bytes: 1e9};
 
-  return {shipped, METHODS, MOST, at, make, overrides, knob, knob_of, length_of};
+  return {
+    shipped,
+    METHODS,
+    MOST,
+    at,
+    make,
+    overrides,
+    text_of,
+    meaning,
+    meaning_of_parameter,
+    knob,
+    knob_of,
+    length_of,
+    is_long
+  };
 })();

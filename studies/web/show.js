@@ -12,55 +12,88 @@ const Show = (() => {
       answer?.faults?.length                               ? say('faulty') :
                                                              say('stopped');
 
-  function show_columns() {
-    for (const method of METHODS) {
-      const {answer, code, less, more, of} = State.results[method] ?? {};
-      if (!answer) continue;
-      Panel.show_stale(byId('columns'), method, Answers.is_stale(method));
-      if (!answer.result) {
-        const status = status_without_result(answer);
-        const words =
-            answer.cancelled ? say('stopped.words') : (answer.faults ?? []).map((fault) => fault.text).join(' ');
-        Panel.show_column(byId('columns'), method, status, true, [], words);
-        continue;
-      }
-      const {status, cost, steps, warnings, solutions, message} = answer.result;
-      const step = Answers.last_step(answer), is_good = Boolean(step);
-      const rows = [];
-      if (State.shown.derivative) {
-        const {value, sides} = Derivative.read(step, State.shown.response, State.shown.parameter);
-        if (sides) rows.push([say('below'), numeral(sides[0]), 'value'], [say('above'), numeral(sides[1]), 'value']);
-        else rows.push([say('derivative'), numeral(value), 'value']);
-        const low = Answers.response_of(less), high = Answers.response_of(more);
-        const difference =
-            less && of === State.shown.parameter ?
-                (high - low) / (2 * Derivative.step_of(answer.document, of, State.scene.lesson?.difference).step) :
-                NaN;
-        rows.push([say('difference'), less && of === State.shown.parameter ? numeral(difference) : '…', 'difference']);
-      } else {
-        rows.push([
-          say('answer'),
-          is_good ? numeral(step.responses[State.shown.response], 7) :
-                    say('failed-at', {time: numeral(steps.at(-1)?.time ?? 0, 4)}),
-          'value'
-        ]);
-      }
-      rows.push(
-          [say('error'), Answers.error_words(method), 'error'], [say('newton'), numeral(cost.counts.newton), 'newton']);
-      if (method === 'uzawa_al') rows.push([say('augmentations'), numeral(cost.counts.augmentations), 'augmentations']);
-      rows.push(
-          [say('factorisations'), numeral(cost.counts.factorizations), 'factorizations'],
-          [say('milliseconds'), numeral(1000 * cost.seconds.total, 2), 'milliseconds']);
-      const others = (solutions ?? []).map((other) => numeral(other.responses[State.shown.response], 4));
-      const extra = warnings.some((warning) => warning.code === 'non_unique') ?
-                        say('warning.non_unique', {others: others.join('; ')}) :
-                    is_good ? '' :
-                              message;
-      Panel.show_column(byId('columns'), method, say('status.' + status), !is_good, rows, extra);
-    }
+  const is_several = (result) => result.warnings.some((warning) => warning.code === 'non_unique');
+
+  /** How the contact points of a step are, in words. */
+  function states_of(step) {
+    const count = {stick: 0, slip: 0, open: 0};
+    for (const contact of Object.values(step.contacts))
+      for (const state of Object.keys(count)) count[state] += contact[state];
+    const held = Object.keys(count).filter((state) => count[state]);
+    return held.length === 1 && count[held[0]] === 1 ? say('state.' + held[0]) : say('states', count);
   }
 
-  /** A picture before anything happened: what a learner predicts from. */
+  /** What a method has to say besides its numbers. */
+  function message_of({result, cancelled, faults}) {
+    if (!result) return cancelled ? say('stopped.words') : (faults ?? []).map((fault) => fault.text).join(' ');
+    const step = result.steps.at(-1);
+    if (!result.status.startsWith('converged')) return result.message;
+    if (!is_several(result)) return '';
+    const value = (one) => `${numeral(one.responses[State.shown.response], 4)} (${states_of(one)})`;
+    const others = result.solutions.filter((other) => other.time === step.time).map(value);
+    return others.length ? say('warning.non_unique', {own: value(step), others: others.join('; ')}) :
+                           say('warning.non_unique.before');
+  }
+
+  /** An answer with as many digits as a card has room for. */
+  const answer_words = (value) => numeral(value, Math.abs(value) < 1e-3 ? 4 : 7);
+
+  /** Rows of the card of a method. */
+  function rows_of(method) {
+    const {answer, less, more, of} = State.results[method], {cost, steps} = answer.result;
+    const step = Answers.last_step(answer), lesson = State.scene.lesson, rows = [];
+    if (State.shown.derivative) {
+      const {value, sides} = Derivative.read(step, State.shown.response, State.shown.parameter);
+      if (sides) rows.push([say('below'), numeral(sides[0]), 'value'], [say('above'), numeral(sides[1]), 'value']);
+      else rows.push([say('derivative'), numeral(value), 'value']);
+      const low = Answers.response_of(less), high = Answers.response_of(more),
+            is_there = less && of === State.shown.parameter;
+      const difference =
+          is_there ? (high - low) / (2 * Derivative.step_of(answer.document, of, lesson?.difference?.[of]).step) : NaN;
+      rows.push([say('difference'), is_there ? numeral(difference) : '…', 'difference']);
+    } else {
+      rows.push([
+        say(steps.length > 1 ? 'answer.end' : 'answer'),
+        step ? answer_words(step.responses[State.shown.response]) :
+               say('failed-at', {time: numeral(steps.at(-1)?.time ?? 0, 4)}),
+        'value'
+      ]);
+      if (lesson?.exact === 'lame' && step && State.shown.response === lesson.response)
+        rows.push([
+          say('against-lame'),
+          numeral(100 * (step.responses[lesson.response] / Answers.lame(answer.document) - 1), 2) + '\u00a0%', 'exact'
+        ]);
+    }
+    rows.push(
+        [say('error'), Answers.error_words(method), 'error'], [say('newton'), numeral(cost.counts.newton), 'newton']);
+    if (method === 'uzawa_al') rows.push([say('augmentations'), numeral(cost.counts.augmentations), 'augmentations']);
+    rows.push(
+        [say('factorisations'), numeral(cost.counts.factorizations), 'factorizations'],
+        [say('milliseconds'), numeral(1000 * cost.seconds.total, 2), 'milliseconds']);
+    return rows;
+  }
+
+  function show_columns() {
+    const messages = {};  // of methods, by text
+    for (const method of METHODS) {
+      const {answer} = State.results[method] ?? {};
+      if (!answer) continue;
+      Panel.show_stale(byId('columns'), method, Answers.is_stale(method));
+      const status = answer.result ? say('status.' + answer.result.status) : status_without_result(answer);
+      Panel.show_column(
+          byId('columns'), method, status, !Answers.last_step(answer), answer.result ? rows_of(method) : []);
+      const message = message_of(answer);
+      if (message) (messages[message] ??= []).push(say(method));
+    }
+    Panel.show_messages(byId('messages'), messages);
+    const {document, lesson} = State.scene, {response, derivative, parameter} = State.shown;
+    byId('meaning').textContent = [
+      Scenes.meaning(document, response), derivative ? Scenes.meaning_of_parameter(document, parameter) : '',
+      lesson?.units ? say('units', {units: lesson.units}) : say('units.any')
+    ].join(' ');
+  }
+
+  /** A picture before anything happened: what a learner predicts from, and where nothing converged. */
   const before = (picture) => ({
     ...picture,
     ...(picture.frames?.[0] && {obstacles: picture.frames[0].obstacles}),
@@ -68,13 +101,13 @@ const Show = (() => {
     traction: [],
     displacement: picture.displacement.map((u) => u.map(() => 0)),
     von_mises: picture.von_mises.map(() => 0),
-    contact: picture.contact.map((point) => ({...point, state: 'open'})),
+    contact: picture.contact.map((point) => ({...point, state: 'unknown'})),
   });
 
   function show_picture() {
     const solved = State.results[State.shown.drawn]?.answer?.picture;
     if (!solved) return;
-    const picture = State.answered ? solved : before(solved);
+    const is_solved = Boolean(solved.traction), picture = State.answered && is_solved ? solved : before(solved);
     const frames = picture.frames ?? [];
     byId('time').hidden = frames.length < 3;
     const step = byId('step');
@@ -84,8 +117,9 @@ const Show = (() => {
     const frame = frames[index];
     if (frame)
       byId('step-words').textContent =
-          say('time.at', {step: frame.step, steps: frames.at(-1).step, time: numeral(frame.time, 3)});
-    const counts = {open: 0, stick: 0, slip: 0, closed: 0};
+          say('time.at', {step: frame.step, steps: frames.at(-1).step, time: numeral(frame.time, 3)}) +
+          response_words(frame.step);
+    const counts = {open: 0, stick: 0, slip: 0, closed: 0, unknown: 0};
     for (const point of (frame ?? picture).contact) ++counts[point.state];
     const words = say('picture.alt', {method: say(State.shown.drawn), ...counts, slip: counts.slip + counts.closed});
     const times =
@@ -94,12 +128,19 @@ const Show = (() => {
           control.value = value;
           Page.changed();
         });
-    Picture.legend(byId('legend'));
-    if (State.scene.drags.length) byId('legend').append(' · ', say('knobs'));
+    Picture.legend(byId('legend'), picture);
     if (State.answered)
-      byId('legend').append(
-          ' · ' + say('drawn', {method: say(State.shown.drawn)}),
-          times === 1 ? '' : ' ' + say('magnified', {times: numeral(times)}));
+      byId('legend').append(byId('legend').childNodes.length ? '· ' : '', [
+        say(is_solved ? 'drawn' : 'drawn.nothing', {method: say(State.shown.drawn)}),
+        times === 1 ? '' : say('magnified', {times: numeral(times)}), State.scene.drags.length ? say('knobs') : ''
+      ].join(' '));
+  }
+
+  /** The value of the response after a step, by the method that is drawn. */
+  function response_words(step) {
+    const {response, drawn} = State.shown;
+    const value = State.results[drawn].answer.result.steps[step - 1]?.responses?.[response];
+    return Number.isFinite(value) ? `, ${response} = ${numeral(value, 4)}` : '';
   }
 
   function show_arrow() {
@@ -107,7 +148,7 @@ const Show = (() => {
     const fits = State.shown.derivative && less && of === State.shown.parameter && Answers.last_step(answer);
     byId('arrow').hidden = !fits;
     if (!fits) return;
-    const {value, step} = Derivative.step_of(answer.document, of, State.scene.lesson?.difference);
+    const {value, step} = Derivative.step_of(answer.document, of, State.scene.lesson?.difference?.[of]);
     const slope = Derivative.read(Answers.last_step(answer), State.shown.response, of);
     Derivative.draw(
         byId('arrow'), {
@@ -131,28 +172,34 @@ const Show = (() => {
       byId('verdict').textContent = say('verdict.none', {accuracy});
       return;
     }
-    const others = [
-      ...order.slice(1).map((row) => say('verdict.other', {method: say(row.method), work: numeral(row.x, 3)})),
+    const run = (row) => say('verdict.run', {
+      method: say(row.method),
+      knob: row.power === null ? say('control.knob.auto') :
+                                 say('knob.' + row.method) + ' ' + Answers.knob_words(row.power),
+      work: numeral(row.x, 3)
+    });
+    byId('verdict').textContent = [
+      say('verdict', {accuracy, run: run(order[0])}),
+      order.length > 1 ? say('verdict.then', {runs: order.slice(1).map(run).join('; ')}) : '',
       ...METHODS.filter((method) => !best[method]).map((method) => say('verdict.not', {method: say(method)}))
-    ];
-    const knob =
-        order[0].power === null ? say('control.knob.auto') : numeral(Number((10 ** order[0].power).toPrecision(3)), 3);
-    byId('verdict').textContent =
-        say('verdict',
-            {accuracy, method: say(order[0].method), knob, work: numeral(order[0].x, 3), others: others.join(' ')});
+    ].join(' ');
   }
 
   function show_chart() {
-    const name = State.shown.view, rows = Rows[name]();
-    const by = State.scene.lesson?.x && State.scene.lesson.x !== State.shown.response ? State.scene.lesson.x :
-                                                                                        say('chart.time');
+    const name = State.shown.view, rows = Rows[name](), steps = Rows.axes_of_steps();
+    const what = State.shown.derivative ? Answers.what() : steps.y, error = say('chart.error', {what: Answers.what()});
     const titles = {
-      cost: {x: say('chart.work'), y: say('chart.error', {what: Answers.what()})},
-      steps: {x: by, y: Answers.what()},
-      contact: {x: say('chart.place.' + Rows.along_contact()), y: say('chart.traction')}
+      cost: {x: say('chart.work'), y: error, short: [say('chart.work.short'), say('chart.error.short')]},
+      knob: {x: say('chart.knob'), y: error, short: [say('control.knob'), say('chart.error.short')]},
+      steps: {x: steps.x ?? say('chart.time'), y: what, short: [steps.x ?? say('chart.time'), what]},
+      contact: {
+        x: say('chart.place.' + Rows.along_contact()),
+        y: say('chart.traction'),
+        short: [say('chart.place.short'), say('chart.traction')]
+      }
     }[name];
-    byId('cost').hidden = name !== 'cost';
-    if (name === 'cost') show_verdict(rows);
+    byId('cost').hidden = name !== 'cost' && name !== 'knob';
+    if (!byId('cost').hidden) show_verdict(Rows.cost());
     const values = rows.filter((row) => row.kind === 'now')
                        .map((row) => `${row.name} ${numeral(row.x, 3)}, ${numeral(row.error, 2)}`);
     byId('chart').setAttribute('aria-label', say('chart.alt', {view: say('view.' + name), values: values.join('; ')}));

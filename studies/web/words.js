@@ -7,6 +7,12 @@ const Words = (() => {
   const say = (key, values = {}) => (words[key] ?? key).replace(/\{(\w+)\}/g, (all, name) => values[name] ?? all);
   const has = (key) => key in words;
 
+  /** A term and what it means, of words "term: meaning". */
+  const explained = (key) => {
+    const cut = words[key].indexOf(': ');
+    return [words[key].slice(0, cut), words[key].slice(cut + 2)];
+  };
+
   /** A number: a power of ten below 0.001 and from 10000 on, as in the report. */
   function numeral(x, digits = 6) {
     if (!Number.isFinite(x)) return say('no-number');
@@ -27,5 +33,5 @@ const Words = (() => {
     document.title = say('title');
   }
 
-  return {say, has, numeral, fill, shipped: words};
+  return {say, has, explained, numeral, fill, shipped: words};
 })();

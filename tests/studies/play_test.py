@@ -7,6 +7,7 @@ import base64
 import json
 import math
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -45,12 +46,14 @@ SLIDE = WAIT + """
 PREDICT = WAIT + """
   await until(() => methods.every((method) => value(method, 'error')));
   const hidden = getComputedStyle(document.querySelector('.column dl')).visibility;
-  const waits = document.querySelector('#prediction .show').disabled;
+  const waits = document.querySelector('#prediction .show').disabled, still = document.getElementById('controls').inert;
   all('#prediction input')[0].click();
   click('#prediction .show');
   await settled();
-  return {hidden, waits, seen: getComputedStyle(document.querySelector('.column dl')).visibility,
-          words: document.getElementById('see').textContent};
+  await pause(900);
+  return {hidden, waits, seen: getComputedStyle(document.querySelector('.column dl')).visibility, still,
+          words: document.getElementById('see').textContent, focus: document.activeElement.id, hash: location.hash,
+          moves: !document.getElementById('controls').inert};
 """
 LESSON = WAIT + """
   await until(() => methods.every((method) => value(method, 'error')));
@@ -77,6 +80,55 @@ SWEEP = WAIT + """
   };
   return {coarse: await asked(-2), fine: await asked(-6), points: all('#chart g.mark-symbol path').length};
 """
+KEPT = WAIT + """
+  await settled();
+  return document.getElementById('see').textContent;
+"""
+NEXT = WAIT + """
+  const lesson = () => document.getElementById('lesson').value;
+  await settled();
+  await pause(900);  // a page that is still being loaded would take the next lesson's address for its own
+  click('.next');
+  await until(() => lesson() === 'cylinders');
+  const next = lesson();
+  await until(() => location.hash.includes('response='));  // once the page has written its address, nothing ends the way back
+  history.back();
+  await until(() => lesson() === 'loop');
+  return {next, back: lesson(), words: !document.getElementById('see').hidden};
+"""
+AT_STEP = WAIT + """
+  await settled();
+  const input = document.getElementById('step');
+  input.value = 36;  // t = 2: the anchor is at -0.1
+  input.dispatchEvent(new Event('input', {bubbles: true}));
+  await pause(300);
+  const handle = document.querySelector('.handle[data-control="anchor"]'), at = seen(handle.querySelector('.grip'));
+  const point = (type, x) => new PointerEvent(type, {clientX: x, clientY: at.top + 5, bubbles: true});
+  handle.dispatchEvent(point('pointerdown', at.left + 5));
+  dispatchEvent(point('pointermove', at.left + 45));
+  dispatchEvent(point('pointerup', at.left + 45));
+  return {dragged: document.getElementById('control-anchor').value};
+"""
+TICKS = WAIT + """
+  await settled();
+  await until(() => document.querySelector('#chart svg'));
+  await pause(500);
+  const ticks = all('#chart .role-axis').map((axis) => all('.role-axis-label text', axis).map((one) => one.textContent));
+  return {ticks, legend: all('#chart .role-legend text').map((one) => one.textContent),
+          keys: document.getElementById('legend').textContent, meaning: document.getElementById('meaning').textContent,
+          bar: Boolean(document.querySelector('#picture .scale'))};
+"""
+TIP = WAIT + """
+  await settled();
+  await until(() => document.querySelector('#chart g.mark-symbol path'));
+  const at = seen(all('#chart g.mark-symbol path').at(-1));
+  return {x: at.left + at.width / 2, y: at.top + at.height / 2};
+"""
+PAPER = WAIT + """
+  await settled();
+  await until(() => document.querySelector('#chart svg'));
+  await pause(500);
+"""
 DERIVATIVE = WAIT + """
   await settled();
   click('[name="shown"][value="derivative"]');
@@ -102,6 +154,7 @@ DRAG = WAIT + """
 EDIT = WAIT + """
   await settled();
   click('#open-editor');
+  await pause(100);
   const text = document.getElementById('text'), whole = text.value, faults = () => document.getElementById('faults').textContent;
   const type = (words) => { text.value = words; text.dispatchEvent(new Event('input', {bubbles: true})); };
   type(whole.replace('"friction": 0.3', '"fricton": 0.3'));
@@ -111,11 +164,13 @@ EDIT = WAIT + """
   const at = text.value.slice(text.selectionStart, text.selectionStart + 9);
   type(whole.replace('"friction": 0.3', '"friction": 0.2'));
   await until(() => !document.getElementById('run').disabled);
+  const former = document.querySelector('#chart svg');
   click('#run');
   await until(() => document.getElementById('lesson').value === '');
+  const cleared = !former.isConnected;
   await settled();
   await pause(900);
-  return {told, off, at, columns: columns(), hash: location.hash.length, commands: await commands()};
+  return {told, off, at, cleared, focus: document.activeElement.id, columns: columns(), hash: location.hash.length, commands: await commands()};
 """
 TOO_LARGE = WAIT + """
   await settled();
@@ -135,13 +190,13 @@ CANCEL = WAIT + """
   clearInterval(timer);
   for (const button of all('.column .stop:not([hidden])')) button.click();
   const stopped = await until(() => all('.column .status').some((place) => place.textContent === 'stopped'));
-  return {words, ticks, stopped, later: document.querySelector('.column[data-method="uzawa_al"] .more').textContent};
+  return {words, ticks, stopped, later: document.getElementById('messages').textContent};
 """
 FORM = WAIT + """
   await settled();
   const drawing = await until(() => document.querySelector('#chart svg'));
   await pause(300);
-  return {chart: drawing, beyond: document.documentElement.scrollWidth - innerWidth, high: document.documentElement.scrollHeight,
+  return {gap: seen(document.getElementById('chart')).top - seen(document.getElementById('controls')).bottom, chart: drawing, beyond: document.documentElement.scrollWidth - innerWidth, high: document.documentElement.scrollHeight,
           first: document.querySelector('#terminal').getBoundingClientRect().top, ink: getComputedStyle(document.body).color,
           marks: all('#chart g.mark-symbol path').length};
 """
@@ -242,11 +297,20 @@ def check_page(browser, program, source):
     visit(browser, "#lesson=loop")
     found = browser.run(PREDICT)
     check("prediction", found["hidden"] == "hidden" and found["waits"] and found["seen"] == "visible" and
-          found["words"].startswith("No: at 0.07."), found)
+          found["words"].startswith("You said: at 0.1, where the anchor is. The answer: at 0.07."), found)
+    check("controls wait for the prediction", found["still"] and found["moves"] and found["focus"] == "see", found)
+    visit(browser, found["hash"])
+    check("a link keeps the prediction", browser.run(KEPT).startswith("You said: at 0.1"), found["hash"])
+    found = browser.run(NEXT)
+    check("the next lesson, and back", found["next"] == "cylinders" and found["back"] == "loop" and found["words"], found)
+    visit(browser, "#lesson=loop&predicted=1")
+    found = browser.run(AT_STEP)
+    check("a knob follows the pointer at a step that goes back", float(found["dragged"]) < 0.1, found)
     visit(browser, "")
     found = browser.run(EDIT)
     check("a fault", "scene.json:20:67: /contacts/sole/fricton: unknown key" in found["told"] and found["off"] and
           found["at"].startswith("\""), found)
+    check("a run of the editor", found["cleared"] and found["focus"] == "scene-title", found)
     check("a scene of one's own", found["hash"] > 300 and all("scene.json" in line for line in found["commands"]), found)
     found["commands"] = [f"stickslip run studies/scenes/slider.json -m {method} --set /contacts/sole/friction=0.2"
                          for method in METHODS]
@@ -277,7 +341,34 @@ def check_lessons(browser, program, source):
         check_values(lesson["id"], program, source, found, found["response"], found["parameter"])
     visit(browser, "#lesson=accuracy")
     found = browser.run(SWEEP)
-    check("verdict", "0.01: Penalty" in found["coarse"] and "Cheapest within" in found["fine"] and "⁻⁶: Penalty" not in found["fine"] and found["points"] > 15, found)
+    check("verdict", "in the chart is Penalty, stiffness 1 (work 5.33)" in found["coarse"] and
+          "10⁻⁶ the cheapest run in the chart is Uzawa, scale 100 (work 6.7)" in found["fine"] and found["points"] > 15, found)
+
+
+def check_charts(browser):
+    """Ticks differ, keys are there, and a point says what it is."""
+    for address, legend in (("#lesson=belt&predicted=1&view=steps", "Monolithic"), ("#lesson=mesh&predicted=2", "closed form"),
+                            ("#lesson=stiff&predicted=2&view=steps", "Penalty"), ("#lesson=corners&predicted=1", "for comparison: smooth (Monolithic)")):
+        visit(browser, address)
+        found = browser.run(TICKS)
+        check(f"ticks of {address}", all(len(set(axis)) == len(axis) for axis in found["ticks"]), found)
+        check(f"key of {address}", legend in found["legend"] and found["bar"], found)
+    check("key of the mesh's colours", "stress (von Mises)" in found["keys"], found)
+    check("what a response is", found["meaning"].startswith("x: force of the support at die.top, x."), found)
+    visit(browser, "")
+    browser.ask("Input.dispatchMouseEvent", type="mouseMoved", **browser.run(TIP))
+    words = browser.run("await until(() => document.querySelector('#tip:not([hidden])')); return document.getElementById('tip')?.textContent;")
+    check("hover", words and "work" in words and "error" in words, words)
+
+
+def check_editor(browser):
+    visit(browser, "#lesson=kink&predicted=3")
+    text = browser.run(WAIT + "await settled(); click('#open-editor'); await pause(200); return document.getElementById('text').value;")
+    check("the editor has what the controls say", '"force": [10, 0]' in text and text.startswith("// One degree"), text)
+    lines = "// a comment\n" + re.sub(r"^//.*\n", "", text, flags=re.M)
+    visit(browser, "#json=" + urllib.parse.quote(lines))
+    found = browser.run(SETTLED)
+    check("a link whose scene has comments", found["lesson"] == "" and not found["told"], found)
 
 
 def check_addresses(browser, program, source):
@@ -305,10 +396,18 @@ def check_forms(browser):
     check("first screen", wide["chart"] and wide["beyond"] <= 0 and wide["first"] <= 720 and wide["marks"] >= 3, wide)
     visit(browser, "", 390, 844)
     phone = browser.run(FORM)
-    check("a phone", phone["chart"] and phone["beyond"] <= 0, phone)
+    check("a phone", phone["chart"] and phone["beyond"] <= 0 and phone["gap"] < 400, phone)
     visit(browser, "", scheme="dark")
     dark = browser.run(FORM)
     check("dark", dark["ink"] != wide["ink"], dark)
+    visit(browser, "#lesson=cylinders&predicted=0")
+    browser.run(PAPER)
+    browser.ask("Emulation.setEmulatedMedia", media="print")
+    paper = browser.run("return {name: seen(document.getElementById('meaning')).height, licences: seen(document.querySelector('footer details')).height};")
+    check("paper", paper["name"] > 0 and paper["licences"] == 0, paper)
+    pages = base64.b64decode(browser.ask("Page.printToPDF")["data"]).count(b"/Type /Page\n")
+    check("paper: one page", pages == 1, pages)
+    browser.ask("Emulation.setEmulatedMedia", media="")
 
 
 def show_times(browser, page):
@@ -347,6 +446,8 @@ def main():
             check_page(browser, program, source)
             check_lessons(browser, program, source)
             check_addresses(browser, program, source)
+            check_charts(browser)
+            check_editor(browser)
             check_forms(browser)
         browser.close()
     print("the page works")
