@@ -31,7 +31,7 @@ const char* const study = R"json({
     "type": "object", "title": "one of the following", "additionalProperties": false, "properties": {
       "method": {"description": "that method on the same mesh: the enforcement error", "$ref": "#/$defs/method",
         "examples": [{"monolithic_al": {}}]},
-      "overkill": {"description": "monolithic_al on a finer mesh: like the next two the discretisation error",
+      "overkill": {"description": "monolithic_al on a finer mesh, with the same steps: like the next two the discretisation error",
         "type": "object", "examples": [{"refine": 2}], "required": ["refine"], "additionalProperties": false,
         "properties": {
         "refine": {"description": "levels finer than the cell, up to 10", "title": "whole number >= 1",

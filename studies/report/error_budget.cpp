@@ -124,11 +124,16 @@ std::string first_quantity(const Study& study) {
 std::string signed_number(double value) { return (value > 0 ? "+" : "") + number(value, 2); }
 
 /// The parts of a budget with a value above its noise, the largest first.
+/// Whether the reference has a part too, so that it is none of the error.
+bool is_shared(const json& budget, const std::string& part) {
+  return at(at(object_at(budget, "parts"), part), "shared") == true;
+}
+
 std::vector<std::pair<std::string, double>> parts_by_size(const json& budget) {
   std::vector<std::pair<std::string, double>> parts;
   for (const auto& look : part_looks())
     if (const Entry entry = entry_of(budget, look.name);
-        look.name != "error" && look.name != "interaction" && entry.drawn())
+        look.name != "error" && look.name != "interaction" && entry.drawn() && !is_shared(budget, look.name))
       parts.emplace_back(look.name, entry.value.get<double>());
   std::sort(parts.begin(), parts.end(),
             [](const auto& a, const auto& b) { return std::abs(a.second) > std::abs(b.second); });
@@ -171,8 +176,9 @@ std::string dominant_part(const Study& study, const std::string& family, const s
   const auto& [part, value] = parts.front();
   constexpr double cancelling = 1.25;  // times the error: then other parts take away a fifth of it at least
   if (parts.size() > 1 && std::abs(value) > cancelling * std::abs(off))
-    return out + fmt::format(". That is small because {} ({}) and {} ({}) cancel in part; it would not last.", part,
-                             signed_number(value), parts[1].first, signed_number(parts[1].second));
+    return out +
+           fmt::format(". That is small because {} ({}) and {} ({}) cancel in part; with other numbers they may not.",
+                       part, signed_number(value), parts[1].first, signed_number(parts[1].second));
   constexpr double nearly_all = 0.8;  // of the error
   const char* const rest = std::abs(value) >= nearly_all * std::abs(off) ? ", and hardly anything else does" : " most";
   return out +

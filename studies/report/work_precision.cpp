@@ -137,8 +137,12 @@ void describe(const Study& study, const Subject& subject, Figure& figure) {
     figure.title = (subject.derivative ? "Sensitivities: error against " : "Responses: error against ") + reference;
     figure.text =
         "Discretisation error: the distance from " + reference +
-        ", mesh, steps and method together. Where curves lie on one level, mesh and steps decide and a stricter method "
-        "buys nothing. " +
+        (reference == "the finer mesh"
+             ? ", which has the same steps: mesh and method together. Where curves lie on one level, the mesh decides "
+               "and "
+               "a stricter method buys nothing. "
+             : ", mesh, steps and method together. Where curves lie on one level, mesh and steps decide and a stricter "
+               "method buys nothing. ") +
         joined + " ";
   } else {
     figure.id = "kkt";
@@ -149,7 +153,11 @@ void describe(const Study& study, const Subject& subject, Figure& figure) {
         "dimensionless. " +
         joined + " ";
   }
-  if (subject.derivative) figure.text += "Costs are those of the solution and its derivatives together.";
+  if (subject.derivative)
+    figure.text +=
+        "Errors are relative to the derivative, or to the response over the parameter if that is larger. Costs are "
+        "those "
+        "of the solution and its derivatives together.";
 }
 
 /// One chart a measure of cost, where some run has it.

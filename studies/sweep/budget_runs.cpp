@@ -61,6 +61,14 @@ BudgetPart limit_part(const auto& exact, const auto& finer, const std::string& q
   return beyond_limit(exact.values.at(quantity), finer[0].values.at(quantity), finer[1].values.at(quantity), noise);
 }
 
+/// Whether the errors of a study are against finer meshes alone, with the steps of the runs.
+bool are_of_the_same_steps(const std::vector<Reference>& references) {
+  const auto has = [&](Reference::Kind kind) {
+    return std::any_of(references.begin(), references.end(), [&](const auto& of) { return of.kind == kind; });
+  };
+  return has(Reference::Kind::overkill) && !has(Reference::Kind::analytic) && !has(Reference::Kind::values);
+}
+
 }  // namespace
 
 void round_otherwise(Scene& scene, int copy) {
@@ -270,6 +278,7 @@ json BudgetRunner::of(const CellInput& cell, const CaseResult& given) {
                     {"step", limit_part(shared_.exact, shared_.steps, quantity, noise)},
                     {"mesh", limit_part(shared_.exact, shared_.mesh, quantity, noise)}};
     if (referred) budget.error = value;
+    budget.parts[3].second.shared = referred && are_of_the_same_steps(study_.references);
     budget.scale = scale;
     out["quantities"][quantity] = to_json(budget);
   }

@@ -45,6 +45,10 @@ json to_json(const Budget& budget) {
     if (part.value) entry["noise"] = part.noise / budget.scale;
     if (part.order) entry["order"] = *part.order;
     if (!part.reason.empty()) entry["reason"] = part.reason;
+    if (part.shared) {
+      entry["shared"] = true;
+      continue;
+    }
     if (part.value)
       sum += *part.value / budget.scale;
     else

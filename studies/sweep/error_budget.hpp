@@ -16,6 +16,7 @@ struct BudgetPart {
   double noise = 0;             ///< what rounding leaves uncertain of the value
   std::optional<double> order;  ///< observed, of a limit
   std::string reason;           ///< why there is no value, or why it is what it is without a run
+  bool shared = false;          ///< the reference has this part too, so the error against it has not
 
   static BudgetPart unknown(std::string reason) { return {std::nullopt, 0, std::nullopt, std::move(reason)}; }
 };
@@ -36,9 +37,9 @@ struct Budget {
   double scale = 1;                                       ///< all numbers are divided by it. pre: > 0
 };
 
-/// {"scale", "error", "parts": {NAME: {"value", "noise", "order", "reason"}}, "sum", "noise", "interaction",
-/// "without"}: `sum` is that of the parts with a value, `noise` its own, `interaction` what it leaves of the error,
-/// `without` the parts that it lacks, which the interaction then holds too.
+/// {"scale", "error", "parts": {NAME: {"value", "noise", "order", "reason", "shared"}}, "sum", "noise", "interaction",
+/// "without"}: `sum` is that of the parts with a value, but those that the reference shares; `noise` its own,
+/// `interaction` what it leaves of the error, `without` the parts that it lacks, which the interaction then holds too.
 nlohmann::json to_json(const Budget& budget);
 
 }  // namespace stickslip

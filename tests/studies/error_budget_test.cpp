@@ -70,6 +70,9 @@ TEST(Budget, LeavesTheRestAsInteractionAndSaysWhatItLacks) {
   EXPECT_TRUE(out["parts"]["step"]["value"].is_null());
   EXPECT_EQ(out["parts"]["step"]["reason"], "no path");
   EXPECT_DOUBLE_EQ(out["parts"]["mesh"]["value"], 2);
+  budget.parts[0].second.shared = true;  // a finer mesh has the steps of the run
+  EXPECT_DOUBLE_EQ(to_json(budget)["sum"], -0.5);
+  EXPECT_DOUBLE_EQ(to_json(budget)["interaction"], 2.25);
   budget.error.reset();
   EXPECT_TRUE(to_json(budget)["interaction"].is_null());
 }
