@@ -13,4 +13,4 @@ add_custom_target(stickslip_version BYPRODUCTS "${version_header}"
     -D "COMPILER=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}" -D "FLAGS=${compile_flags}"
     -D "BUILD_TYPE=${CMAKE_BUILD_TYPE}" -D "LICENCE=${effective_licence}"
     -P "${PROJECT_SOURCE_DIR}/cmake/write_version.cmake"
-  VERBATIM COMMENT "")
+  VERBATIM COMMENT "Writes the version into a header")

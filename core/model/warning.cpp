@@ -6,6 +6,8 @@ std::string_view name_of(WarningCode code) {
   switch (code) {
     case WarningCode::large_strain:
       return "large_strain";
+    case WarningCode::tiny_strain:
+      return "tiny_strain";
     case WarningCode::large_rotation:
       return "large_rotation";
     case WarningCode::large_sliding:

@@ -10,6 +10,7 @@ namespace stickslip {
 /// The whole set (docs/results.md).
 enum class WarningCode {
   large_strain,        ///< value: largest component of strain
+  tiny_strain,         ///< value: largest component of strain
   large_rotation,      ///< value: degrees
   large_sliding,       ///< value: elements of the slave
   idle_friction,       ///< value: the coefficient that has no influence

@@ -37,9 +37,15 @@ bool is_value(const std::string& word) {
 
 std::string set_in_two_words(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i + 2 < words.size(); ++i) {
-    const std::string &pointer = words[i + 1], &value = words[i + 2];
-    if (words[i] == "--set" && pointer.starts_with('/') && pointer.find('=') == std::string::npos && is_value(value))
-      return fmt::format("--set {0} {1}: is two words; must be one, with = between: --set {0}={1}", pointer, value);
+    const std::string &pointer = words[i + 1], &next = words[i + 2];
+    if (words[i] != "--set" || !pointer.starts_with('/') || !is_value(next)) continue;
+    if (next.starts_with('=') || (pointer.ends_with('=') && pointer.find('=') + 1 == pointer.size())) {
+      const std::string value = next == "=" && i + 3 < words.size() ? words[i + 3] : next;
+      return fmt::format("--set {} {}: must be one word, without spaces: --set {}={}", pointer, next,
+                         pointer.substr(0, pointer.find('=')), value.substr(value.starts_with('=') ? 1 : 0));
+    }
+    if (pointer.find('=') == std::string::npos)
+      return fmt::format("--set {0} {1}: is two words; must be one, with = between: --set {0}={1}", pointer, next);
   }
   return "";
 }

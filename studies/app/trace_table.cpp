@@ -70,6 +70,7 @@ std::vector<report::ConePath> cone_paths(const Problem& problem, const Trace& tr
     report::ConePath path{fmt::format("{}, point {}", model.scene.contacts[point.contact].name, p),
                           slots.friction[point.contact],
                           point.tangents > 1,
+                          model.bodies[point.slave_body].mesh.shape == ElementShape::point,
                           {}};
     for (std::size_t i = 0; i < trace.iterates.size(); ++i) {
       const auto& now = trace.iterates[i];

@@ -109,6 +109,21 @@ void select_method(JsonDocument& document, const std::optional<std::string>& nam
   document.set("/method", {{*name, nlohmann::json::object()}}, {"-m " + *name});
 }
 
+/// What an assignment to an option of a method lacks, -m or the name of the method; "" of all others.
+std::string fault_of_option(const nlohmann::json& scene, const std::string& pointer) {
+  const std::string within = "/method/";
+  const nlohmann::json* own = value_at(scene, "/method");
+  if (!own || !own->is_object() || own->size() != 1 || !pointer.starts_with(within)) return "";
+  const std::string method = own->begin().key(), rest = pointer.substr(within.size()),
+                    name = rest.substr(0, rest.find('/'));
+  if (own->contains(name)) return "";
+  if (default_method(name)) return "the scene runs " + method + "; add -m " + name;
+  const auto known = default_method(method);
+  return known && to_json(*known).at(method).contains(name)
+             ? "names no method; did you mean " + in_quotes(within + method + "/" + rest) + "?"
+             : "";
+}
+
 /// Whether a document is an object with the keys of a scene.
 bool is_scene(const JsonDocument& given, Diagnostics& diagnostics) {
   const JsonNode root(given, diagnostics);
@@ -192,7 +207,12 @@ std::optional<Input> read_scene(JsonDocument document, const Overrides& override
                                 const std::optional<std::string>& method_name, Diagnostics& diagnostics) {
   MeshFiles mesh_files;
   if (method_name && default_method(*method_name)) select_method(document, method_name, diagnostics, mesh_files);
-  for (const std::string& assignment : overrides) document.override_value(assignment, diagnostics);
+  for (const std::string& assignment : overrides)
+    if (const std::string fault = fault_of_option(document.root(), assignment.substr(0, assignment.find('=')));
+        fault.empty())
+      document.override_value(assignment, diagnostics);
+    else
+      diagnostics.error({{"--set " + assignment}, "", fault});
   auto input = read_scene(document, method_name, diagnostics, mesh_files);
   return diagnostics.has_errors() ? std::nullopt : std::move(input);
 }

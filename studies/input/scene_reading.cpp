@@ -137,6 +137,16 @@ std::optional<double> SceneReading::setting(const JsonNode& node, const Rule& ru
   return node.number(rule);
 }
 
+std::string SceneReading::sides_called(const std::string& name) const {
+  std::vector<std::string> whole;
+  for (const std::string& body : body_names)
+    if (const auto mesh = meshes.find(body); mesh != meshes.end()) {
+      const SideExpression side = parse_side_expression(body + "." + name);
+      if (side.error.empty() && side_error(mesh->second, side).empty()) whole.push_back(in_quotes(body + "." + name));
+    }
+  return whole.empty() ? "" : "; did you mean " + listed(whole) + "?";
+}
+
 std::optional<NamedSide> SceneReading::side(const JsonNode& node) {
   const auto text = node.text();
   if (!text) return std::nullopt;
@@ -147,7 +157,7 @@ std::optional<NamedSide> SceneReading::side(const JsonNode& node) {
   };
   if (!expression.error.empty()) {
     const bool body = std::find(body_names.begin(), body_names.end(), *text) != body_names.end();
-    return fault(body ? "a body; must be BODY.SIDE" : expression.error);
+    return fault(body ? "a body; must be BODY.SIDE" : expression.error + sides_called(*text));
   }
   if (std::find(body_names.begin(), body_names.end(), expression.body) == body_names.end())
     return fault("there is no body " + in_quotes(expression.body) + ";" + suggestion(expression.body, body_names) +

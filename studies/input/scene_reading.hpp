@@ -72,6 +72,8 @@ struct SceneReading {
   std::optional<int> count(const JsonNode&, int least);
   std::optional<double> setting(const JsonNode&, const Rule&);
 
+  /// "; did you mean "BODY.NAME"?" of the bodies that have a side of this name; "" where none has.
+  std::string sides_called(const std::string& name) const;
   /// A side expression of a deformable body; faults are reported, except those that follow from a body at fault.
   std::optional<NamedSide> side(const JsonNode&);
 

@@ -27,9 +27,9 @@ double from_limit(decltype(RLIMIT_AS) resource) {
 }
 
 std::string in_words(double bytes) {
-  for (const auto& [unit, size] : {std::pair{"TB", 1e12}, {"GB", 1e9}, {"MB", 1e6}})
+  for (const auto& [unit, size] : {std::pair{"TB", 1e12}, {"GB", 1e9}, {"MB", 1e6}, {"kB", 1e3}})
     if (bytes >= size) return fmt::format("{:.{}f} {}", bytes / size, bytes < 10 * size ? 1 : 0, unit);
-  return fmt::format("{:.0f} bytes", bytes);
+  return fmt::format("{:.0f} B", bytes);
 }
 
 }  // namespace

@@ -118,6 +118,12 @@ std::string with_zero_before_point(std::string_view word) {
   return number ? sign + "0" + std::string(digits) : "";
 }
 
+/// Whether a token is a value, or begins one.
+bool begins_value(std::string_view token) {
+  return !token.empty() && (std::isalnum(static_cast<unsigned char>(token[0])) ||
+                            std::string_view("\"{[-").find(token[0]) != std::string_view::npos);
+}
+
 }  // namespace
 
 /// Listens to the parser and notes where keys and values begin.
@@ -184,7 +190,12 @@ class PositionReader : public json::json_sax_t {
       at = comma.position();
       message = std::string("is not JSON: a comma stands before the ") + text_[last] + " that ends the " +
                 (text_[last] == '}' ? "object" : "list") + "; take the comma out";
-    } else if (token.take(); has("invalid") && !with_zero_before_point(token.taken()).empty()) {
+    } else if (token.take();
+               has("unexpected") && (has("expected '}'") || has("expected ']'")) && begins_value(token.taken())) {
+      at = cursor_.position();
+      message =
+          "is not JSON: a comma is missing here, before the next " + std::string(has("expected '}'") ? "key" : "value");
+    } else if (has("invalid") && !with_zero_before_point(token.taken()).empty()) {
       message = "is " + std::string(token.taken()) + ", which is not JSON; must be " +
                 with_zero_before_point(token.taken()) + ", with a digit before the point";
       pointer = next_pointer();

@@ -17,7 +17,8 @@ std::string number(double value, int digits) {
   std::string text = fmt::format("{:.{}e}", value, digits - 1);
   const std::size_t e = text.find('e');
   const int power = std::atoi(text.c_str() + e + 1);
-  if (power >= -3 && power < 4) return fmt::format("{:.{}g}", value, std::max(digits, power + 1));
+  if (power >= digits && power < 4) return fmt::format("{:.0f}", value);  // (99.6 has the power of 100)
+  if (power >= -3 && power < 4) return fmt::format("{:.{}g}", value, digits);
   text.erase(e);
   if (text.find('.') != std::string::npos) {
     text.erase(text.find_last_not_of('0') + 1);

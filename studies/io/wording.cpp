@@ -1,5 +1,7 @@
 #include "studies/io/wording.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,6 +31,10 @@ std::string in_quotes(std::string_view name) { return "\"" + std::string(name) +
 
 std::string counted(long count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string in_percent(double share) {
+  return share < 1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
 std::string listed(const std::vector<std::string>& names) {

@@ -14,6 +14,8 @@ std::string shown(const nlohmann::json& value);
 std::string in_quotes(std::string_view name);
 /// "1 cell", "2 cells": a noun that an s makes many.
 std::string counted(long count, const std::string& noun);
+/// "0.031 %", "5800 %": two digits, or all of a whole number.
+std::string in_percent(double share);
 /// Names as a list: "a, b, c"; of more than 40 the first 40, and how many there are.
 std::string listed(const std::vector<std::string>& names);
 /// ` did you mean "NAME"?` with the nearest of the names, where at most two letters differ (a swap counts as one) or

@@ -156,8 +156,10 @@ void draw_axes(const ConePath& path, const ConePanel& at, Drawing& drawing) {
     drawing.line(at.x(0) - 5, at.y(n * step), at.x(0), at.y(n * step), {"ink"});
     drawing.text(at.x(0) - 8, at.y(n * step) + 4, number(n * step + 0.0), {Anchor::end, 11});  // 0, never -0
   }
-  drawing.text(at.x(side / 2 / at.scale), top + side + 36, "pressure", {Anchor::middle, 12});
-  drawing.text(at.left + 12, top + side / 2, path.in_space ? "size of the tangential traction" : "tangential traction",
+  drawing.text(at.x(side / 2 / at.scale), top + side + 36, path.of_forces ? "normal force" : "pressure",
+               {Anchor::middle, 12});
+  const std::string friction = path.of_forces ? "friction" : "tangential traction";
+  drawing.text(at.left + 12, top + side / 2, (path.in_space ? "size of the " : "") + friction,
                {Anchor::middle, 12, "ink", true});
   drawing.text(at.x(0), top - 12, path.title, {Anchor::start, 13, "ink", false, true});
 }

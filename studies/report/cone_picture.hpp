@@ -21,6 +21,7 @@ struct ConePath {
   std::string title;
   FrictionLaw<double> law;
   bool in_space;
+  bool of_forces;  ///< a point, which has no area
   std::vector<ConeIterate> iterates;
 };
 

@@ -45,7 +45,7 @@ struct Look {
 /// Dark, middle and light, so that grey print tells them apart.
 constexpr std::array<Look, 4> looks = {{{'k', "sticks", "stick", "#0072B2"},
                                         {'s', "slips", "slip", "#E69F00"},
-                                        {'c', "touches", "touch", "#7a7f87"},
+                                        {'c', "touches", "touches", "#7a7f87"},
                                         {'o', "open", "open", "#ffffff"}}};
 
 /// Those that occur; stick and slip go together.

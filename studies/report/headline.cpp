@@ -195,7 +195,7 @@ std::string reference_run(const Study& study) {
             !cell.enforcement.empty() && worst(cell.enforcement, "") == 0.0 &&
             (!same || at(cell.record, "default") == true))
           same = &cell;
-      return same ? same->label + ", one of the runs" : family_name(family) + ", run apart";
+      return same ? same->label + ", one of the runs" : family_name(family) + ", run as the reference only";
     }
   return "";
 }
@@ -223,7 +223,8 @@ Counts counts_of(const Cell& cell, Of of) {
 }
 
 std::string seconds_in_words(double seconds) {
-  return seconds < 0.1 ? number(1e3 * seconds, 2) + " ms" : number(seconds, 2) + " s";
+  constexpr double rounds_to_a_tenth = 0.0995;
+  return seconds < rounds_to_a_tenth ? number(1e3 * seconds, 2) + " ms" : number(seconds, 2) + " s";
 }
 
 std::string percent(double error) {
@@ -249,6 +250,7 @@ std::vector<std::string> warning_sentences(const Study& study) {
       if (kind.runs++ > 0 && value <= kind.worst) continue;
       kind.worst = value;
       kind.words = text_at(warning, "text") + "; " + text_at(warning, "remedy");
+      std::erase(kind.words, '`');  // (marks of names on a terminal)
     }
   std::vector<std::string> out;
   for (const auto& [key, kind] : kinds)

@@ -68,8 +68,11 @@
     return lines;
   }
 
-  /** The ends of the lines with the words that stand there: the name and the option's value, or the value alone. */
-  function endsOf(rows, words) {
+  /**
+   * The ends of the lines with the words that stand there: the name and the option's value, or the value alone. With
+   * the runs that failed, and their values.
+   */
+  function endsOf(rows, words, failed) {
     const lines = new Map(), names = [], values = [];
     for (const row of words ? rows : []) lines.set(row.line, [...(lines.get(row.line) ?? []), row]);
     for (const line of lines.values()) {
@@ -78,7 +81,8 @@
       names.push({...last, words: moves ? `${last[words.name]}, ${last[words.value]}` : last[words.name]});
       if (moves) values.push({...first, words: first[words.value]});
     }
-    return [...names, ...values];
+    const valued = words ? failed.filter((row) => row[words.value] !== undefined) : [];
+    return [...names, ...values, ...valued.map((row) => ({...row, words: `${row[words.value]} fails`}))];
   }
 
   const INK = '#1b1d21';  // on paper, whatever the screen's scheme
@@ -100,6 +104,7 @@
     const ground = rows.find((row) => row.zero)?.[chart.y.field];
     const x = channel(chart.x, rows, width - 110), y = channel(chart.y, rows, height, ground);
     const guides = rows.filter((row) => row.guide), curves = rows.filter((row) => !row.failed && !row.guide);
+    const failed = rows.filter((row) => row.failed);
     const layer = (values, mark, encoding, more) => ({data: {values}, mark, encoding: {x, y, ...encoding}, ...more});
     const zeros = {y: {field: chart.y.field, type: 'quantitative'}};
     const layers = [
@@ -116,9 +121,9 @@
              strokeWidth: {condition: {param: 'near', empty: false, value: 4}, value: 2}},
             {name: 'points', params: [{name: 'near', select: {type: 'point', on: 'pointerover', clear: 'pointerout',
                                                               nearest: true}}]}),
-      layer(rows.filter((row) => row.failed), {type: 'point', shape: data.failed, size: 4, strokeWidth: 2.5, opacity: 1},
-            {color, tooltip}),
-      layer(endsOf(curves, chart.words), {type: 'point', opacity: 0, size: 60}, {}, {name: 'ends'}),
+      layer(failed, {type: 'point', shape: data.failed, size: 4, strokeWidth: 2.5, opacity: 1}, {color, tooltip},
+            {name: 'failed'}),
+      layer(endsOf(curves, chart.words, failed), {type: 'point', opacity: 0, size: 60}, {}, {name: 'ends'}),
     ];
     const words = {type: 'text', x: -6, align: 'right', text: 'exactly 0', color: ink, fontSize: 12};
     if (ground)
@@ -139,7 +144,7 @@
       encode: {update: {text: {field: 'datum.words'}, fontSize: {value: 11},
                         fill: {signal: "scale('color', datum.datum.series)"}}},
       transform: [{type: 'label', size: {signal: '[width, height]'}, padding: 0,
-                   avoidMarks: ['lines_pathgroup', 'points_marks'], offset: [4],
+                   avoidMarks: ['lines_pathgroup', 'points_marks', 'failed_marks'], offset: [4],
                    anchor: ['top-right', 'top-left', 'bottom-right', 'bottom-left', 'right', 'left', 'top', 'bottom']}],
     });
     return spec;

@@ -112,7 +112,7 @@ std::string in_words(const Scene& scene, bool with_close_up) {
           (scene.mesh.tracks.empty() ? "" : ", the line the path of the point, the dotted one of the anchor") +
           (scene.mesh.in_space ? "; seen along z" : "") +
           (scene.mesh.aslant ? "; seen aslant, from the side of the contact" : ""),
-      scene.zooms && with_close_up ? " In the frame: the contact at true scale." : "");
+      scene.zooms && with_close_up ? " Frame: the contact enlarged; displacements not exaggerated." : "");
 }
 
 /// Nodes and contact points where they are drawn, and elements by their nodes.

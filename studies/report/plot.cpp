@@ -198,8 +198,8 @@ struct Box {
   }
 };
 
-/// The option's values at the ends of lines: each at its own line's end, where it covers no marker and no other value
-/// and, if there is such a place, no line.
+/// The option's values at the ends of lines and at the runs that failed: each at its own end, where it covers no marker
+/// and no other value and, if there is such a place, no line.
 class EndValues {
  public:
   EndValues(const Figure& figure, const Frame& frame, const Chart& chart) : frame_(frame), chart_(chart) {
@@ -219,14 +219,19 @@ class EndValues {
     const auto [x1, y1] = place_of(frame_, chart_, *line.front());
     const auto [x2, y2] = place_of(frame_, chart_, *line.back());
     if (std::abs(x1 - x2) > size || std::abs(y1 - y2) > size)
-      for (const json* end : {line.back(), line.front()}) draw_value(*end, color, drawing);
+      for (const json* end : {line.back(), line.front()}) draw_value(*end, "", color, drawing);
+  }
+
+  void draw_failed(const json& row, const std::string& color, Drawing& drawing) {
+    draw_value(row, " fails", color, drawing);
   }
 
  private:
   static constexpr double size = 11, aside = 7, above = 6, below = 14;
 
-  void draw_value(const json& row, const std::string& color, Drawing& drawing) {
-    const std::string value = row.value(chart_.words.value, "");
+  void draw_value(const json& row, const std::string& after, const std::string& color, Drawing& drawing) {
+    if (!row.contains(chart_.words.value)) return;
+    const std::string value = row[chart_.words.value].get<std::string>() + after;
     const auto [x, y] = place_of(frame_, chart_, row);
     const double wide = text_width(value, size), middle = y + size / 2 - 1;
     std::vector<Box> boxes;
@@ -279,6 +284,10 @@ bool draw_series(const Frame& frame, const Chart& chart, const Series& series, E
     drawing.path(path, style_of(series, true));
     if (!chart.words.value.empty()) values.draw(line, color_of(series), drawing);
   }
+  if (!chart.words.value.empty())
+    for (const json* row : frame.rows)
+      if (row->value("series", "") == series.name && row->value("failed", false))
+        values.draw_failed(*row, color_of(series), drawing);
   return present;
 }
 

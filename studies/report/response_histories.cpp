@@ -145,7 +145,8 @@ std::string in_words(const std::vector<History>& runs, const Pair& first, const 
   if (has_path && ends_in_a_loop(runs.front(), first))
     out +=
         " A loop that does not come back along itself is friction's memory: where force and displacement are of the "
-        "same place and direction, the area it encloses is the work that friction took.";
+        "same place and direction, the area it encloses is the work that friction took; straight lines between "
+        "the steps cut its corners, and smaller steps cut less.";
   return out;
 }
 

@@ -47,11 +47,11 @@ const json& contacts_of(const json& step) {
   return object_at(step.contains("iterate") ? at(step, "iterate") : step, "contacts");
 }
 
-/// Points of a contact by state in a step: open, stick and slip, or open and touch.
+/// Points of a contact by state in a step: open, stick and slip, or open and touches.
 std::vector<std::pair<const char*, double>> states_of(const json& step, const std::string& contact, bool frictionless) {
   const json& counts = at(contacts_of(step), contact);
   const double open = number_at(counts, "open"), stick = number_at(counts, "stick"), slip = number_at(counts, "slip");
-  if (frictionless) return {{"open", open}, {"touch", stick + slip}};
+  if (frictionless) return {{"open", open}, {"touches", stick + slip}};
   return {{"open", open}, {"stick", stick}, {"slip", slip}};
 }
 
@@ -101,9 +101,8 @@ std::string steps_table(const Study& run) {
     const std::string status = text_at(step, "status");
     table.row_classes.emplace_back(status.starts_with("converged") ? "" : "failed");
   }
-  return "<p class=\"note\">Newton counts the iterations of all tries of a step. Its history has those of the last "
-         "try, and "
-         "once more the state that each augmentation starts from.</p>\n" +
+  return "<p class=\"note\">Newton: iterations of all attempts at a step. History: lines recorded for the last "
+         "attempt.</p>\n" +
          compact_html(table, "Steps");
 }
 
@@ -119,10 +118,10 @@ double largest_share(const Cell& cell, const std::string& parameter) {
   return largest;
 }
 
-/// A derivative in eight digits; in two where it is rounding, whose digits say nothing.
+/// A derivative in eight digits; 0 where it is rounding.
 std::string slope_in_words(double slope, double value, double largest_share) {
   constexpr double rounding = 1e-12;
-  return number(slope, std::abs(slope) <= rounding * largest_share * std::abs(value) ? 2 : 8);
+  return std::abs(slope) <= rounding * largest_share * std::abs(value) ? "0" : number(slope, 8);
 }
 
 /// Whether the last step has a solution, be it an inaccurate one.

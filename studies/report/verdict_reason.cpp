@@ -42,11 +42,13 @@ class Costs {
   bool told_ = false;
 };
 
-/// The cheapest or, where others are within 5 % of it, a tie of these; of more than three the first two.
-std::string winners_in_words(const Picks& winners, Costs& costs) {
+/// The cheapest or, where others are within 5 % of it, a tie of these; of more than three the first two. `alone`: there
+/// is no other row.
+std::string winners_in_words(const Picks& winners, bool alone, Costs& costs) {
   const auto name = [](const Pick* pick) { return "<b>" + escape_sentence(pick->name()) + "</b>"; };
   if (winners.size() == 1)
-    return name(winners.front()) + " is cheapest: " + escape_sentence(costs.of(*winners.front()));
+    return name(winners.front()) + (alone ? " takes least: " : " is cheapest: ") +
+           escape_sentence(costs.of(*winners.front()));
   const std::size_t told = winners.size() > 3 ? 2 : winners.size();
   std::string out = "a tie (work within 5 %)";
   for (std::size_t i = 0; i < told; ++i)
@@ -101,7 +103,7 @@ std::string reason(const std::vector<Row>& rows, const Measure& measure, const s
     Costs costs(measure);
     std::string out = measure.of == Of::responses ? "Response" : "Derivative";
     out += escape_sentence(" within " + level.title() + (variant.empty() ? "" : " at " + variant)) + ": ";
-    out += winners_in_words(winners, costs);
+    out += winners_in_words(winners, rows.size() == 1, costs);
     out += what_others_take(told, told.size() < others.size(), costs);
     return "<p class=\"reason\">" + out + "." + who_misses(rows, measure, column) + "</p>\n";
   }

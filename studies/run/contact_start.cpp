@@ -104,8 +104,8 @@ std::vector<Warning> overlaps_at_start(const Problem& problem) {
     if (gaps.unasked == 0) continue;
     warnings.push_back(
         {WarningCode::starts_overlapping, gaps.name, gaps.overlap,
-         "move the bodies apart; refine curved sides, whose facets leave the curve; if an interference is meant, let "
-         "the sides touch and give it as a negative `offset`",
+         "move the bodies apart; turn the master round if it is solid on the wrong side; refine curved sides, whose "
+         "facets leave the curve; if an interference is meant, let the sides touch and give it as a negative `offset`",
          fmt::format("{}: {} of {} points overlap at the start by up to {:.3g}, which no `offset` asks for, and the "
                      "first step pushes them apart",
                      gaps.name, gaps.unasked, gaps.points, gaps.overlap)});

@@ -162,8 +162,9 @@ std::string explain(const Input& input, const Problem& problem) {
     text += fmt::format("  along the path by arc length: the factor of load {} is found, in at most {} steps of {}\n",
                         scene.arc_length->load, scene.arc_length->max, number(path_length(model, problem.slots), 3));
   const bool unknown = has_unknown_multipliers(input.method);
-  text += fmt::format("unknowns: {} displacements", model.free_dofs.size());
-  text += unknown ? fmt::format(", {} multipliers\n", model.multiplier_count) : ", no multipliers among the unknowns\n";
+  text += "unknowns: " + count(model.free_dofs, "displacement");
+  text +=
+      unknown ? ", " + counted(model.multiplier_count, "multiplier") + "\n" : ", no multipliers among the unknowns\n";
   text += "at its peak: " + about(needed_bytes(problem, input)) + ", within a factor of two\n";
   text += fmt::format("method: {}\n", json_with_exact_numbers(to_json(input.method)));
   text += engine_lines(input, problem);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "methods/stepping/free_bodies.hpp"
 #include "studies/io/wording.hpp"
 #include "studies/run/contact_start.hpp"
 #include "studies/run/side_curve.hpp"
@@ -38,7 +39,8 @@ std::string what_to_check(const FailedContact& contact) {
     return "no contact has friction, so nothing resists sliding; give one `friction`, or hold the body by a support";
   if (contact.stick < contact.slip)
     return "most of those that touch slip: the load may be more than friction bears; push less, raise `friction`, or "
-           "prescribe the motion by a support";
+           "prescribe the motion by a support; or it pulls the body off its master: check its sign";
+  if (contact.unbalanced) return "the load may pull the body off its master; check its sign";
   return "";
 }
 
@@ -52,13 +54,19 @@ bool may_be_contact(const Increment<double>& failed) {
          (s == Status::no_equilibrium || s == Status::singular || s == Status::cap || is_without_cause(s));
 }
 
-FailedContact failed_contact(const Problem& problem, const ContactField<double>& field) {
+FailedContact failed_contact(const Problem& problem, const Increment<double>& failed) {
   const auto& model = problem.model;
+  const auto& field = failed.state.contact;
   FailedContact contact;
   contact.rough = model.effects.friction;
   for (const auto state : field.state)
     ++(state == ContactState::open ? contact.open : is_slipping(state) ? contact.slip : contact.stick);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) contact.unheld |= is_held_by_contact_alone(model, b);
+  const std::vector<ContactState> open(model.points.size(), ContactState::open);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    contact.unbalanced |=
+        failed.status == Status::no_equilibrium && !free_motion(model, problem.slots, b, failed.state, open).empty();
+    contact.unheld |= contact.unbalanced || is_held_by_contact_alone(model, b);
+  }
   contact.nearest = std::numeric_limits<double>::infinity();
   for (const auto& gaps : start_gaps(problem)) contact.nearest = std::min(contact.nearest, gaps.least);
   return contact;
@@ -114,7 +122,7 @@ void explain_failed_contact(const Problem& problem, Trajectory<double>& trajecto
       sentences.push_back(warning->text + "; " + warning->remedy);
     }
   if (!trajectory.increments.empty() && may_be_contact(trajectory.increments.back()) && !loose_body(problem.model)) {
-    FailedContact contact = failed_contact(problem, trajectory.increments.back().state.contact);
+    FailedContact contact = failed_contact(problem, trajectory.increments.back());
     contact.turned = turned;
     sentences.insert(sentences.begin(), failed_contact_in_words(contact));
   }

@@ -11,7 +11,8 @@ namespace stickslip {
 struct FailedContact {
   int open = 0, stick = 0, slip = 0;  ///< numbers of points; frictionless ones that touch count as slip
   bool rough = true;                  ///< a point has friction
-  bool unheld = false;                ///< contact alone holds a body
+  bool unheld = false;                ///< contact alone holds a body, in some direction at least
+  bool unbalanced = false;            ///< and no forces of it balance the load
   bool turned = false;                ///< an obstacle is turned inside out, which is said elsewhere
   double nearest = 0;                 ///< least gap at the start, length; infinite where no point faces a master
 };

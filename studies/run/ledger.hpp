@@ -55,7 +55,7 @@ nlohmann::json repeatable_ledger_json(const Ledger& ledger);
 std::string ledger_table(const Ledger& ledger);
 /// "12 elements", "1 analysis"; of an amount that is not exact "~2.1e5 factor entries".
 std::string amount_in_words(const Amount& amount);
-/// One line of a recorded ledger with the effects that are on: unknowns, memory, and seconds from 0.1 on.
+/// "bodies: 2 displacements, 252 B; contact: ...": the effects of a recorded ledger that are on.
 std::string ledger_line(const nlohmann::json& ledger);
 
 }  // namespace stickslip

@@ -99,17 +99,16 @@ std::string ledger_line(const json& ledger) {
   std::vector<std::string> parts;
   for (const auto& row : ledger) {
     if (!row["on"].get<bool>()) continue;
-    std::string part = ledger_words(row["effect"]);
+    std::vector<std::string> amounts;
     double bytes = 0;
     for (const auto& [name, amount] : row["memory"].items()) bytes += amount.get<double>();
     for (const auto& [name, amount] : row["unknowns"].items())
-      if (amount != 0) part += " " + unknowns_text({{name, amount}});
-    if (bytes > 0) part += " " + bytes_text(bytes);
-    if (row["seconds"].is_number() && row["seconds"] >= 0.1)
-      part += fmt::format(" {:.1f} s", row["seconds"].get<double>());
-    parts.push_back(part);
+      if (amount != 0)
+        amounts.push_back(amount_in_words(name == "normal" || name == "tangential" ? "multipliers" : name, amount));
+    if (bytes > 0) amounts.push_back(bytes_text(bytes));
+    parts.push_back(ledger_words(row["effect"]) + (amounts.empty() ? "" : ": ") + joined(amounts));
   }
-  return joined(parts);
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 }  // namespace stickslip

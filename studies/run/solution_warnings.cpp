@@ -10,6 +10,7 @@
 #include "methods/newton/residuals.hpp"
 #include "methods/stepping/diagnosis.hpp"
 #include "sensitivity/force_search.hpp"
+#include "studies/io/wording.hpp"
 #include "studies/run/warnings.hpp"
 
 namespace stickslip {
@@ -203,10 +204,11 @@ void add_soft_penalty(const CaseResult& result, std::vector<Warning>& warnings) 
   double yields = 0;
   for (const auto& step : solved_steps(result)) yields = std::max({yields, step.kkt.gap, step.kkt.stick});
   if (yields > most)
-    warnings.push_back({WarningCode::soft_penalty, "", yields, stiffer,
-                        fmt::format("the springs of the penalty yield by {:.2g} % of the motion of the contact, and "
-                                    "forces are off by about as much",
-                                    100 * yields)});
+    warnings.push_back(
+        {WarningCode::soft_penalty, "", yields, stiffer,
+         fmt::format("the springs of the penalty yield by {} of the motion of the contact, and forces are "
+                     "off by about as much",
+                     in_percent(yields))});
   const auto& [model, slots, unused] = *result.problem;
   const auto rho = initial_regularisation(slots, *penalty);
   const auto shares = slave_shares(model, slots);

@@ -8,6 +8,7 @@
 
 #include "methods/newton/residuals.hpp"
 #include "methods/stepping/free_bodies.hpp"
+#include "studies/io/wording.hpp"
 #include "studies/run/contact_start.hpp"
 #include "studies/run/contact_warnings.hpp"
 #include "studies/run/locking_warnings.hpp"
@@ -32,9 +33,37 @@ BodyMeasures deformation_of(const Problem& problem, const State<double>& state, 
   return largest;
 }
 
+/// Traction of a point up to which it may be rounding. `reach`: largest displacement.
+double rounding_of_traction(const Problem& problem, std::size_t p, double reach) {
+  constexpr double rounding = 2e-12;  // of the motion: what its stiffness makes of less is right to 1e-4 at most
+  return rounding * reach * problem.slots.stiffness[p] / problem.slots.geometry[p].area;
+}
+
+/// Whether a contact presses on a body at the end of a step.
+bool is_pressed_at(const Problem& problem, const State<double>& state, std::size_t b) {
+  const auto& model = problem.model;
+  const double reach = largest_nodal_norm(state.displacement, model.dimension);
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const auto nodes = nodes_in(model, state.contact, p);
+    if (-state.contact.traction[model.points[p].multiplier] > rounding_of_traction(problem, p, reach) &&
+        std::any_of(nodes.begin(), nodes.end(), [&](int node) { return nodes_of_body(model, b).has(node); }))
+      return true;
+  }
+  return false;
+}
+
+/// Whether a body that is pressed is strained by next to nothing, as where units are mixed.
+bool is_hardly_strained(const CaseResult& result, std::size_t b, double strain) {
+  constexpr double next_to_nothing = 1e-8;
+  const auto steps = solved_steps(result);
+  return strain < next_to_nothing && std::any_of(steps.begin(), steps.end(), [&](const StepResult& step) {
+           return is_pressed_at(*result.problem, step.increment->state, b);
+         });
+}
+
 void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) {
   if (result.problem->model.scene.finite_strain) return;
-  constexpr double most_strain = 0.05, most_rotation = 5 * degree;
+  constexpr double most_strain = 0.05, absurd_strain = 1, most_rotation = 5 * degree;
   const auto& model = result.problem->model;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     BodyMeasures largest;
@@ -45,9 +74,17 @@ void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) 
     const std::string& name = model.scene.bodies[b].name;
     constexpr const char* smaller = R"(apply less load or motion, or try "strain": "finite")";
     if (largest.strain > most_strain)
-      warnings.push_back({WarningCode::large_strain, name, largest.strain, smaller,
-                          fmt::format("{} is strained by up to {:.2g} %; small strain holds below some 5 %", name,
-                                      100 * largest.strain)});
+      warnings.push_back(
+          {WarningCode::large_strain, name, largest.strain,
+           largest.strain > absurd_strain ? "look at the units of stiffness, loads and motions" : smaller,
+           fmt::format("{} is strained by up to {}; small strain holds below some 5 %", name,
+                       in_percent(largest.strain))});
+    if (largest.strain > 0 && is_hardly_strained(result, b, largest.strain))
+      warnings.push_back({WarningCode::tiny_strain, name, largest.strain,
+                          "look at whether its stiffness, the loads and the lengths are in units that go together",
+                          fmt::format("{} is strained by no more than {:.2g}: it is some {:.2g} times as stiff as what "
+                                      "presses on it",
+                                      name, largest.strain, 1 / largest.strain)});
     if (largest.rotation > most_rotation)
       warnings.push_back({WarningCode::large_rotation, name, largest.rotation / degree, smaller,
                           fmt::format("{} rotates by up to {:.2g} degrees; small strain holds below some 5", name,
@@ -126,16 +163,14 @@ void add_cut_steps(const CaseResult& result, std::vector<Warning>& warnings) {
 /// The motion that a body is free to make where only what presses holds it. `reach`: largest displacement of the run.
 std::string motion_of_floating_body(const Problem& problem, const State<double>& state, std::size_t b, double reach) {
   constexpr double pressing = 1e-6;  // of the largest traction: less is a touch without force
-  constexpr double rounding = 1e-9;  // of the motion: what its stiffness makes of less is no force
   const auto& [model, slots, unused] = problem;
   const auto& points = model.points;
   auto states = state.contact.state;
   double largest = 0;
   for (const auto& point : points) largest = larger(largest, -state.contact.traction[point.multiplier]);
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const double least = rounding * reach * slots.stiffness[p] / slots.geometry[p].area;
-    if (!(-state.contact.traction[points[p].multiplier] > std::max(pressing * largest, least)))
-      states[p] = ContactState::open;
+    const double least = std::max(pressing * largest, rounding_of_traction(problem, p, reach));
+    if (!(-state.contact.traction[points[p].multiplier] > least)) states[p] = ContactState::open;
   }
   return free_motion(model, slots, b, state, states);
 }

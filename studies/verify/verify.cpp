@@ -30,8 +30,8 @@ constexpr Law elements{"elements", 0, "an element may not be turned inside out"}
     dissipation{"dissipation", 1e-6, "of T L: friction takes energy, it gives none"},
     energy{
         "energy", 1e-6,
-        "of all work, and half of what forces change by times motions: the step's own error; and what springs make of "
-        "rounded gaps"},
+        "of all work, and half of each force's change times its motion: the work in a step is that of the mean force, "
+        "which more steps make exact; and what springs make of rounded gaps"},
     flow{"plastic strain", 1e-6, "of the largest: the path of displacements decides it, by the law's own bound"},
     responses{"responses", 1e-7, "of the largest of their kind: the same formula of the same numbers"},
     steps{"steps", 0, "every state that the scene asks for, and that the result holds, is there"};

@@ -15,6 +15,14 @@ TEST(SetInTwoWords, IsToBeJoined) {
   EXPECT_NE(set_in_two_words({"--set", "/a=1", "--set", "/b", "2"}), "");
 }
 
+TEST(SetInTwoWords, MayHaveSpacesAroundItsSign) {
+  for (const Words& words :
+       {Words{"--set", "/a/b", "=", "0.4"}, {"--set", "/a/b", "=0.4"}, {"--set", "/a/b=", "0.4"}}) {
+    const std::string text = set_in_two_words(words);
+    EXPECT_TRUE(text.ends_with(": must be one word, without spaces: --set /a/b=0.4")) << text;
+  }
+}
+
 TEST(SetInTwoWords, IsNotFoundWhereItIsOneWord) {
   EXPECT_EQ(set_in_two_words({"--set", "/a=1", "a.json"}), "");
   EXPECT_EQ(set_in_two_words({"--set", "/a", "a.json"}), "");  // its own fault names the missing value

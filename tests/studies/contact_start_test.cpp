@@ -109,6 +109,8 @@ TEST(FailedContact, GivesNumbersAloneWhereThePatternHasNoCause) {
   EXPECT_EQ(failed_contact_in_words({.open = 1, .stick = 5, .slip = 2, .unheld = true}),
             "8 contact points: 5 stick, 2 slip, 1 open");
   // supports hold the bodies: that all slip, or are open, is no fault
+  EXPECT_THAT(failed_contact_in_words({.open = 1, .stick = 5, .slip = 2, .unheld = true, .unbalanced = true}),
+              HasSubstr("the load may pull the body off its master; check its sign"));
   EXPECT_EQ(failed_contact_in_words({.slip = 1}), "1 contact point: 0 stick, 1 slip, 0 open");
   EXPECT_EQ(failed_contact_in_words({.open = 2}), "2 contact points: 0 stick, 0 slip, 2 open");
 }

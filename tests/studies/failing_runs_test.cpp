@@ -179,6 +179,18 @@ TEST(LoadThatNoContactBalances, IsNamedAtFiniteStrainToo) {
     }
 }
 
+/// A support holds the block along the floor alone.
+TEST(LoadThatPullsOffTheFloor, AsksForItsSign) {
+  for (const auto& method : methods) {
+    json scene = block(4, false);
+    scene["supports"] = {{{"on", "b.top"}, {"move", {{"x", 0}}}}};
+    scene["loads"] = {{{"on", "b.top"}, {"pressure", -10}}};
+    const auto result = run(scene, method);
+    EXPECT_FALSE(is_converged(result.status())) << method;
+    EXPECT_THAT(result.message(), testing::ContainsRegex("check (its sign|the sign of the load)")) << method;
+  }
+}
+
 /// A point on springs whose axes lean: pushed aside by 1 against a bound of .5, it is lifted where nothing rubs, and
 /// pressed on where the bound does.
 TEST(FrictionThatEndsAtOnce, IsNamedWhereThereIsNoEquilibrium) {

@@ -343,5 +343,14 @@ TEST(Ledger, TellsAmountsInWords) {
   EXPECT_EQ(amount_in_words({"points", 0}), "0 points");
 }
 
+TEST(Ledger, IsALineOfWhatIsOn) {
+  const json recorded = json::parse(R"([
+    {"effect": "bodies", "on": true, "unknowns": {"displacements": 2}, "memory": {"mesh": 200, "slots": 52}},
+    {"effect": "contact", "on": true, "unknowns": {"normal": 1}, "memory": {"points": 1100}},
+    {"effect": "friction", "on": false, "unknowns": {"tangential": 0}, "memory": {}},
+    {"effect": "condensed_engine", "on": true, "unknowns": {"eliminated": 0}, "memory": {}}])");
+  EXPECT_EQ(ledger_line(recorded), "bodies: 2 displacements, 252 B; contact: 1 multiplier, 1.1 kB; condensed engine");
+}
+
 }  // namespace
 }  // namespace stickslip

@@ -222,7 +222,7 @@ TEST_F(ReportCharts, AFrictionlessFilmTouchesAndDoesNotSlip) {
   for (auto& c : cells) c["film"] = {{"times", {0.5, 1}}, {"contacts", {{"sole", {"occ", "cco"}}}}};
   record(description(), cells);
   const auto plate = report::film_of_states(study());
-  EXPECT_THAT(plate->table.header, ElementsAre("method", "contact", "time", "touch", "open"));
+  EXPECT_THAT(plate->table.header, ElementsAre("method", "contact", "time", "touches", "open"));
   EXPECT_THAT(plate->drawing.inline_svg(), testing::AllOf(HasSubstr(">touches<"), Not(HasSubstr("slips"))));
 }
 

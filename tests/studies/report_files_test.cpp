@@ -168,6 +168,18 @@ TEST_F(ReportFiles, ValuesAtTheEndsOfLinesStandBesideLines) {
   EXPECT_LT(place_of("right"), report::Axis(0, 10.6, false, 74, 620)(10)) << "left of the end, as b is right of it";
 }
 
+/// Its cross is near the last run that converged, whose value it would else seem to have.
+TEST_F(ReportFiles, ARunThatFailedHasItsValue) {
+  report::Figure figure;
+  figure.series = {{"a", "#0072B2", "circle", {1, 0}, 60}};
+  for (const auto& [x, setting, failed] : {std::tuple{0.0, "1", false}, {5.0, "1e9", false}, {5.2, "1e10", true}})
+    figure.rows.push_back(
+        {{"series", "a"}, {"line", "a"}, {"x", x}, {"y", x}, {"order", x}, {"setting", setting}, {"failed", failed}});
+  report::Chart chart{.title = "", .x = {.field = "x", .title = "x"}, .y = {"y", "y"}, .tooltip = {}};
+  chart.words = {"series", "setting"};
+  EXPECT_THAT(report::draw_plot(figure, chart)->inline_svg(), HasSubstr(">1e10 fails<"));
+}
+
 /// Names stand side by side below a chart, which leaves three quarters of the height or more to the curves.
 TEST_F(ReportFiles, LegendsTakeLessThanAQuarterOfTheHeight) {
   auto cells = three_methods();

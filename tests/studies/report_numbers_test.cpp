@@ -31,6 +31,7 @@ TEST(ReportText, WritesNumbersInOneStyle) {
       {0.001, "0.001"}, {1e-4, "1e-4"},         {-2.5e-6, "-2.5e-6"},    {0.3, "0.3"},     {1.5e4, "1.5e4"},
       {100, "100"},     {0.00123456, "0.00123"}};
   for (const auto& [value, text] : shown) EXPECT_EQ(report::number(value), text);
+  EXPECT_EQ(report::number(99.6, 2), "100");
   EXPECT_EQ(report::number(INFINITY), "");
   EXPECT_EQ(report::exact_number(1.0 / 3), "0.3333333333333333");
   EXPECT_EQ(report::exact_number(1e7 + 1), "1.0000001e7");

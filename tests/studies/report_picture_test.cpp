@@ -141,7 +141,7 @@ json narrow_contact(int points) {
 TEST(ReportPicture, ShowsASmallContactLargerBesideTheWhole) {
   const auto overview = report::draw_overview(narrow_contact(9));
   ASSERT_TRUE(overview);
-  EXPECT_THAT(overview->text, HasSubstr("In the frame: the contact at true scale."));
+  EXPECT_THAT(overview->text, HasSubstr("Frame: the contact enlarged; displacements not exaggerated."));
   const std::string svg = overview->drawing.inline_svg();
   EXPECT_NE(svg.find("the-scene-clip-2"), std::string::npos);  // a window of its own
   EXPECT_FALSE(report::needs_close_up(narrow_contact(9)));

@@ -297,6 +297,8 @@ std::vector<Broken> broken_contacts() {
        R"(did you mean "bottom"?)"},
       {"slave_without_a_side", b, R"("slave": "block.bottom")", R"("slave": @"block")", "/contacts/sole/slave",
        "a body; must be BODY.SIDE"},
+      {"slave_without_a_body", b, R"("slave": "block.bottom")", R"("slave": @"bottom")", "/contacts/sole/slave",
+       R"("bottom" is not BODY.SIDE; did you mean "block.bottom"?)"},
       {"empty_slave", b, R"("slave": "block.bottom")", R"("slave": @"block.bottom & block.top")",
        "/contacts/sole/slave", "no node belongs"},
       {"unknown_master", b, R"("master": "floor")", R"("master": @"flor")", "/contacts/sole/master",

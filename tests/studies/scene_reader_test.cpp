@@ -383,6 +383,19 @@ TEST(SceneReader, CarriesOutOverridesAndNamesThemInFaults) {
   std::filesystem::remove(path);
 }
 
+TEST(SceneReader, OverridesOfAnotherMethodAskForIt) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "other_method.json";
+  std::ofstream(path) << block_scene;
+  for (const auto& [method, pointer, fault] :
+       {std::tuple{"monolithic_al", "/method/penalty/stiffness", "the scene runs monolithic_al; add -m penalty"},
+        {"penalty", "/method/stiffness", R"(names no method; did you mean "/method/penalty/stiffness"?)"}}) {
+    Diagnostics diagnostics;
+    EXPECT_FALSE(read_scene(path.string(), {std::string(pointer) + "=10"}, method, diagnostics));
+    EXPECT_EQ(diagnostics.text(), std::string("--set ") + pointer + "=10: " + fault + "\n");
+  }
+  std::filesystem::remove(path);
+}
+
 TEST(SceneReader, OverridesMayNameOptionsThatTheFileLeavesOut) {
   const auto path = std::filesystem::path(testing::TempDir()) / "optional_override.json";
   std::ofstream(path) << block_scene;

@@ -64,6 +64,27 @@ TEST(Warnings, NameStrainAndRotation) {
               testing::Contains(is(WarningCode::large_rotation, "upper", "upper rotates by up to 6")));
 }
 
+/// As where E is in Pa and the rest in N and mm.
+TEST(Warnings, NameAPressedBodyThatIsHardlyStrained) {
+  json stiff = blocks(0.002, 0.02, 0.1);
+  stiff["bodies"].erase("lower");
+  stiff["obstacles"] = {{"floor", {{"plane", {{"point", {0, 1}}, {"normal", {0, 1}}}}}}};
+  stiff["contacts"]["sole"]["master"] = "floor";
+  stiff["supports"] = {{{"on", "upper.top"}, {"move", {{"x", {{0, 0}, {1, 0}, {2, 0.02}}}}}}};
+  stiff["loads"] = {{{"on", "upper.top"}, {"pressure", 10}, {"history", {{0, 0}, {1, 1}}}}};
+  stiff["bodies"]["upper"]["material"]["linear_elastic"]["E"] = 210e9;
+  const auto found = warnings(stiff);
+  EXPECT_THAT(found, testing::Contains(is(WarningCode::tiny_strain, "upper", "upper is strained by no more than")));
+  EXPECT_THAT(found, testing::Not(testing::Contains(testing::Field(&Warning::code, WarningCode::floating_body))));
+  stiff["bodies"]["upper"]["material"]["linear_elastic"]["E"] = 1e3;
+  EXPECT_THAT(warnings(stiff),
+              testing::Not(testing::Contains(testing::Field(&Warning::code, WarningCode::tiny_strain))));
+  stiff["bodies"]["upper"]["material"]["linear_elastic"]["E"] = 0.1;
+  EXPECT_THAT(warnings(stiff),
+              testing::Contains(testing::AllOf(testing::Field(&Warning::code, WarningCode::large_strain),
+                                               testing::Field(&Warning::remedy, HasSubstr("units")))));
+}
+
 TEST(Warnings, NameFrictionThatNeverSlips) {
   EXPECT_THAT(
       warnings(blocks(0.002, 0, 5)),
@@ -110,7 +131,7 @@ TEST(Warnings, AreObjectsOfAClosedSetInEveryResult) {
   std::set<std::string_view> names;
   for (int code = 0; code <= static_cast<int>(WarningCode::non_unique); ++code)
     names.insert(name_of(static_cast<WarningCode>(code)));
-  EXPECT_EQ(names.size(), 23u);
+  EXPECT_EQ(names.size(), 24u);
   EXPECT_EQ(names.count(""), 0u);
 }
 
