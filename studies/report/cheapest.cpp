@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -41,9 +40,9 @@ std::vector<std::string> words_of(const std::string& text) {
   return {std::istream_iterator<std::string>(words), {}};
 }
 
-/// "scale=1, 10 or 100" of "scale=1", "scale=10" and "scale=100": of settings that differ in one option, from the
-/// least on, what the first says is not said again. Of more than three the first two, and how many others there are.
-std::string alternatives(std::vector<std::string> settings) {
+/// "scale=1, 10 or 100" of "scale=1", "scale=10" and "scale=100": of settings that differ in one option, what the first
+/// says is not said again. Of more than three the first two, and how many others there are.
+std::string alternatives(const std::vector<std::string>& settings) {
   constexpr std::size_t most = 3;
   const std::size_t told = settings.size() > most ? most - 1 : settings.size();
   const auto first = words_of(settings.front());
@@ -56,9 +55,6 @@ std::string alternatives(std::vector<std::string> settings) {
   };
   const bool alike =
       std::none_of(settings.begin(), settings.end(), [&](auto& setting) { return value(setting).empty(); });
-  const auto number = [&](const std::string& setting) { return std::strtod(value(setting).c_str(), nullptr); };
-  if (alike)  // (words keep their order)
-    std::stable_sort(settings.begin(), settings.end(), [&](auto& a, auto& b) { return number(a) < number(b); });
   std::string out = settings.front();
   for (std::size_t i = 1; i < told; ++i)
     out += (i + 1 < settings.size() ? ", " : " or ") + (alike ? value(settings[i]) : settings[i]);

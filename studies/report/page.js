@@ -121,8 +121,9 @@
              strokeWidth: {condition: {param: 'near', empty: false, value: 4}, value: 2}},
             {name: 'points', params: [{name: 'near', select: {type: 'point', on: 'pointerover', clear: 'pointerout',
                                                               nearest: true}}]}),
-      layer(failed, {type: 'point', shape: data.failed, size: 4, strokeWidth: 2.5, opacity: 1}, {color, tooltip},
-            {name: 'failed'}),
+      ...(failed.length === 0 ? [] : [
+        layer(failed, {type: 'point', shape: data.failed, size: 4, strokeWidth: 2.5, opacity: 1}, {color, tooltip},
+              {name: 'failed'})]),
       layer(endsOf(curves, chart.words, failed), {type: 'point', opacity: 0, size: 60}, {}, {name: 'ends'}),
     ];
     const words = {type: 'text', x: -6, align: 'right', text: 'exactly 0', color: ink, fontSize: 12};
@@ -139,12 +140,13 @@
 
   /** Adds the words at the ends of lines, each where it covers no line, no marker and no other words. */
   function withWords(spec) {
+    const marks = ['lines_pathgroup', 'points_marks', 'failed_marks'];
     spec.marks.push({
       type: 'text', name: 'words', from: {data: 'ends_marks'}, interactive: false,
       encode: {update: {text: {field: 'datum.words'}, fontSize: {value: 11},
                         fill: {signal: "scale('color', datum.datum.series)"}}},
       transform: [{type: 'label', size: {signal: '[width, height]'}, padding: 0,
-                   avoidMarks: ['lines_pathgroup', 'points_marks', 'failed_marks'], offset: [4],
+                   avoidMarks: marks.filter((name) => spec.marks.some((mark) => mark.name === name)), offset: [4],
                    anchor: ['top-right', 'top-left', 'bottom-right', 'bottom-left', 'right', 'left', 'top', 'bottom']}],
     });
     return spec;

@@ -127,7 +127,7 @@ TEST_F(ReportHeadline, NamesTheReferenceAndThatItIsOneOfTheRuns) {
   EXPECT_THAT(page(), HasSubstr("Error of the worst response against Monolithic AL, one of the runs."));
   about["reference"][0] = {{"method", {{"penalty", {{"stiffness", 1e12}}}}}};
   record(about, three_methods());
-  EXPECT_EQ(report::reference_run(study()), "Penalty, run apart");
+  EXPECT_EQ(report::reference_run(study()), "Penalty, run as the reference only");
 }
 
 /// The picture is of one run, and says of which.

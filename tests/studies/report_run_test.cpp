@@ -86,7 +86,7 @@ TEST_F(ReportOfARun, HasASliderOverTheStepsThatWereKept) {
 
 TEST_F(ReportOfARun, TheStepTableSaysHowManyIterationsTheHistoryHolds) {
   EXPECT_THAT(page_of("ironing"),
-              AllOf(HasSubstr(">in the history</th>"), HasSubstr("Its history has those of the last try")));
+              AllOf(HasSubstr(">in the history</th>"), HasSubstr("History: lines recorded for the last attempt")));
 }
 
 // The total is of the solve and its derivatives; output comes on top of it.
@@ -168,10 +168,10 @@ TEST_F(ReportOfARun, TwoHistoriesHaveARowOfTheirOwn) {
 }
 
 /// Of the slider u follows U0, and no force does: what their derivatives hold is rounding.
-TEST_F(ReportOfARun, HasTwoDigitsOfWhatIsRounding) {
+TEST_F(ReportOfARun, HasZeroForWhatIsRounding) {
   const std::string html = page_of("slider");
   const auto row = html.substr(html.find("<td>pull</td>"), 400);
-  EXPECT_THAT(row.substr(0, row.find("</tr>")), testing::ContainsRegex("\"n\">-?[0-9](\\.[0-9])?e-1[0-9]</td>"));
+  EXPECT_THAT(row.substr(0, row.find("</tr>")), testing::ContainsRegex("\"n\">0</td>"));
 }
 
 /// A run without augmentations has no sawtooth to explain.
