@@ -25,7 +25,7 @@ struct Recording {
       for (const auto& [slot, weight] : parameter.slots)
         if (numbers.at_slot[slot].entry < 0) numbers.at_slot[slot] = Reverse::leaf(numbers.at_slot[slot].v, tape);
     Numbers<Reverse> unshaped = numbers;
-    for (const auto& velocity : model.velocities) unshaped.at_slot[velocity.slot] = 0;
+    for (const auto& velocity : model.velocities) unshaped.at_slot[velocity.slot] = numbers.at_slot[velocity.slot].v;
     made = initial_points(model, unshaped);
     points = made;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {

@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "core/mesh/generators.hpp"
+#include "core/mesh/quality.hpp"
 #include "core/mesh/sides.hpp"
 #include "core/model/pairing.hpp"
+#include "core/model/slots.hpp"
 #include "core/model/supports.hpp"
 #include "core/solids/shapes.hpp"
 
@@ -20,6 +22,16 @@ int body_index(const Scene& scene, const std::string& name) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     if (scene.bodies[b].name == name) return static_cast<int>(b);
   throw ModelError("there is no body \"" + name + "\"");
+}
+
+/// Throws ModelError where a body that shape parameters have moved is inside out.
+void check_moved(const Model& model, const Points<double>& points, const DesignVelocity& velocity) {
+  if (model.scene.numbers[velocity.slot] == 0) return;
+  const BodyMesh& body = model.bodies[velocity.body];
+  if (const auto bad = first_inverted_element(body.mesh, points.middleCols(body.first_node, body.mesh.node_count)))
+    throw ModelError(model.scene.bodies[velocity.body].name + " has moved so far that its element " +
+                         std::to_string(*bad + 1) + " is inverted or flat; must move less",
+                     model.scene.pointers[velocity.slot]);
 }
 
 /// Throws ModelError where a load or a contact acts on nothing but the axis of revolution, which has no area.
@@ -414,9 +426,6 @@ Model make_model(const Scene& scene, Seconds& spent) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     points.middleCols(model.bodies[b].first_node, model.bodies[b].mesh.node_count) =
         make_points<double>(scene.bodies[b].mesh, model.bodies[b].mesh, numbers);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    if (const auto fault = radius_fault(scene.space, points, model.bodies[b]); !fault.empty())
-      throw ModelError(fault, "/bodies/" + scene.bodies[b].name + "/mesh");
   for (int b = 0; !scene.shapes.empty() && b < static_cast<int>(model.bodies.size()); ++b) {
     const auto& body = model.bodies[b];
     try {
@@ -426,6 +435,11 @@ Model make_model(const Scene& scene, Seconds& spent) {
       throw ModelError(scene.bodies[b].name + ": " + error.what(), "/parameters");
     }
   }
+  points = initial_points(model, numbers);
+  for (const auto& velocity : model.velocities) check_moved(model, points, velocity);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (const auto fault = radius_fault(scene.space, points, model.bodies[b]); !fault.empty())
+      throw ModelError(fault, "/bodies/" + scene.bodies[b].name + "/mesh");
   resolve_sides(model);
   number_dofs(model, points);
   if (scene.space == Space::axisymmetric) check_areas(model, points);

@@ -48,7 +48,7 @@ def pressures(heights):
 def unevenness(heights, gradient):
     try:
         p, slopes = pressures(heights)
-    except stickslip.NotConverged:  # no optimiser is to walk on a run without a solution: it takes a shorter step
+    except (stickslip.NotConverged, stickslip.InputError):  # no optimiser is to walk on a run without a solution: it takes a shorter step
         gradient[:] = 0
         return np.inf
     mean, apart = p.mean(), p - p.mean()
@@ -72,7 +72,8 @@ def main():
     before, after = pressures(flat)[0], pressures(shaped)[0]
     spread = lambda p: (p.max() - p.min()) / p.mean()
     print(f"largest less least pressure over the mean: {spread(before):.3g} flat, {spread(after):.2g} shaped, "
-          f"after {search.get_numevals()} runs")
+          f"after {search.get_numevals()} runs" + (", the most allowed" if search.last_optimize_result() ==
+                                                   nlopt.MAXEVAL_REACHED else ""))
     print("heights:", " ".join(f"{h:.5f}" for h in shaped))
     return check.passed, spread(before), spread(after)
 

@@ -39,7 +39,7 @@ def identify(curve, start):
     def objective(x, gradient):
         try:
             force, slopes = simulate(dict(zip(NAMES, x * scale)))
-        except stickslip.NotConverged:
+        except (stickslip.NotConverged, stickslip.InputError):
             gradient[:] = 0
             return np.inf
         misfit = force - curve

@@ -64,23 +64,63 @@ struct ParameterReader {
   }
 
   /// One parameter, or where `each` one a node of the side: NAME/0, NAME/1, ... along it.
-  void add_shapes(const std::string& name, const JsonNode& node, ShapeMotion motion, bool each, std::size_t nodes) {
-    for (std::size_t n = 0; n < (each ? nodes : 1); ++n) {
+  /// `values`: of each.
+  void add_shapes(const std::string& name, const JsonNode& node, ShapeMotion motion, bool each,
+                  const std::vector<double>& values) {
+    for (std::size_t n = 0; n < values.size(); ++n) {
       motion.node = each ? static_cast<int>(n) : -1;
       const std::string suffix = each ? "/" + std::to_string(n) : "";
       motion.slot = reading.extra_slot(node.pointer() + suffix);
+      reading.scene.numbers[motion.slot] = values[n];
       Parameter parameter;
       parameter.name = name + suffix;
       parameter.slots = {{motion.slot, 1.0}};
       parameter.pointer = node.pointer() + suffix;
+      parameter.value = values[n];
       reading.scene.parameters.push_back(std::move(parameter));
       reading.scene.shapes.push_back(motion);
     }
   }
 
-  /// {"side", "direction"}, "fixed", "each".
+  /// How far the side, or where `each` every node of it, has moved; none where that is at fault.
+  std::optional<std::vector<double>> shape_values(const JsonNode& node, bool each, std::size_t nodes) {
+    const auto given = node.find("value");
+    if (!given) return std::vector<double>(each ? nodes : 1, 0.0);
+    std::vector<JsonNode> parts{*given};
+    if (each) {
+      const auto list =
+          given->array(nodes, "an array of " + std::to_string(nodes) + " numbers, one a node of the side");
+      if (!list) return std::nullopt;
+      parts = *list;
+    }
+    std::vector<double> values;
+    for (const JsonNode& part : parts) {
+      const auto value = part.number(any_number);
+      if (!value) return std::nullopt;
+      values.push_back(*value);
+    }
+    return values;
+  }
+
+  /// A side that has moved by a value moves along a field that depends on the mesh: no other parameter may move that.
+  void check_moved_meshes(const JsonNode& node) const {
+    const Scene& scene = reading.scene;
+    for (const auto& motion : scene.shapes) {
+      if (scene.numbers[motion.slot] == 0) continue;
+      const std::string mesh = child_pointer("/bodies", scene.bodies[motion.body].name) + "/mesh/";
+      for (const auto& parameter : scene.parameters)
+        for (const auto& [slot, weight] : parameter.slots)
+          if (scene.pointers[slot].starts_with(mesh))
+            return node.find(parameter.name)
+                ->error("is a number of the mesh of " + scene.bodies[motion.body].name +
+                        ", a side of which has moved by the value of a shape parameter; "
+                        "leave out the value, or this parameter");
+    }
+  }
+
+  /// {"side", "direction"}, "fixed", "each", "value".
   void read_shape(const std::string& name, const JsonNode& node) {
-    if (!node.is_object({{"side", "direction"}, {"fixed", "each"}})) return;
+    if (!node.is_object({{"side", "direction"}, {"fixed", "each", "value"}})) return;
     const auto side_node = node.find("side"), direction = node.find("direction"), fixed = node.find("fixed"),
                each = node.find("each");
     const auto side = side_node ? reading.side(*side_node) : std::nullopt;
@@ -116,7 +156,8 @@ struct ParameterReader {
         std::find_if(bodies.begin(), bodies.end(), [&](const Body& body) { return body.name == side->body; });
     if (found == bodies.end()) return;  // the body is at fault, which is said
     motion.body = static_cast<int>(found - bodies.begin());
-    add_shapes(name, node, std::move(motion), each.has_value(), side->side.nodes.size());
+    if (const auto values = shape_values(node, each.has_value(), side->side.nodes.size()))
+      add_shapes(name, node, std::move(motion), each.has_value(), *values);
   }
 
   void read(const std::string& name, const JsonNode& node) {
@@ -165,6 +206,7 @@ std::vector<std::string> read_parameters(const JsonNode& node, const nlohmann::j
   if (!node.is_map("parameters by name")) return {};
   ParameterReader reader{root, method, drop_others, reading};
   for (const auto& [name, parameter] : node.members()) reader.read(name, parameter);
+  reader.check_moved_meshes(node);
   return reader.dropped;
 }
 

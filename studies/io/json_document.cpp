@@ -401,7 +401,12 @@ void JsonDocument::override_value(const std::string& assignment, Diagnostics& di
   if (equals == std::string::npos) return fault("is not POINTER=VALUE, for example /contacts/sole/friction=0.4");
   const std::string pointer = assignment.substr(0, equals), text = assignment.substr(equals + 1);
   const json* old = value_at(root_, pointer);
-  if (!is_pointer(pointer)) return fault(pointer_fault(root_, pointer));
+  if (!is_pointer(pointer)) {
+    const json* named = value_at(root_, child_pointer("/parameters", pointer));
+    const bool known = named && named->is_string();
+    return fault(pointer_fault(root_, pointer) +
+                 (known ? "; the parameter " + pointer + " is " + named->get<std::string>() : ""));
+  }
   const json* parent = value_at(root_, pointer.substr(0, pointer.rfind('/')));
   const bool can_add = parent && parent->is_object();  // an optional key: whoever reads the object says if it is none
   if (!old && !can_add) return fault(pointer_fault(root_, pointer));

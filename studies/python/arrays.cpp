@@ -35,7 +35,7 @@ py::dict sensitivities(const py::object& owner, const RunResult& run) {
   py::dict out;
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
     py::dict of;
-    for (std::size_t j = 0; j < scene.parameters.size(); ++j) {
+    for (const int j : run.order) {
       const auto column = run.sensitivities[i].col(j);
       of[py::str(scene.parameters[j].name)] = view(owner, column.data(), {column.size()});
     }
@@ -67,14 +67,23 @@ py::list displacements(const py::object& owner, const RunResult& run) {
   return out;
 }
 
+/// Values by name, in the order of the scene.
+py::dict parameters(const RunResult& run) {
+  const auto& all = run.simulation.problem->model.scene.parameters;
+  py::dict out;
+  for (const int j : run.order) out[py::str(all[j].name)] = all[j].value;
+  return out;
+}
+
 /// By parameter; those that were not found are not there.
 py::dict displacement_derivatives(const py::object& owner, const RunResult& run) {
   const auto& model = run.simulation.problem->model;
   const auto& derivatives = run.result.gradients.last_displacement;
   py::dict out;
-  for (Eigen::Index j = 0; j < derivatives.cols(); ++j)
-    out[py::str(model.scene.parameters[j].name)] =
-        view(owner, derivatives.col(j).data(), {model.node_count, model.dimension});
+  for (const int j : run.order)
+    if (j < derivatives.cols())
+      out[py::str(model.scene.parameters[j].name)] =
+          view(owner, derivatives.col(j).data(), {model.node_count, model.dimension});
   return out;
 }
 
@@ -88,6 +97,9 @@ py::dict contact(const py::object& owner, const ContactTable& table) {
   out["shear"] = rows(owner, table.shear);
   out["gap"] = view(owner, table.gap.data(), {count});
   out["slip"] = rows(owner, table.slip);
+  const auto tangents = table.shear.rows();
+  const auto dimension = table.traction.rows();
+  out["tangent"] = view(owner, table.tangent.data(), {count, tangents, dimension});
   out["area"] = view(owner, table.area.data(), {count});
   return out;
 }
@@ -113,6 +125,7 @@ py::dict arrays_of(const py::object& owner) {
   const auto& steps = run.result.steps;
   const bool failed = !steps.empty() && !steps.back().increment->solved();
   out["failed_at"] = failed ? py::cast(steps.back().increment->time) : py::none();
+  out["parameters"] = parameters(run);
   out["responses"] = responses(owner, run);
   out["sensitivities"] = sensitivities(owner, run);
   out["coordinates"] = rows(owner, run.simulation.problem->slots.points);

@@ -5,7 +5,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <system_error>
 
 #include "core/algebra/linear_solver.hpp"
@@ -39,10 +41,25 @@ void set_input_error(const std::vector<std::string>& faults, const std::string& 
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
+/// A fault that speaks of options of the command, with the names that Python's arguments have.
+std::string in_python(std::string text) {
+  for (const auto& [option, argument] : {std::pair{"--set ", "set "}, {"-m ", "method "}})
+    if (text.starts_with(option)) text.replace(0, std::string_view(option).size(), argument);
+  for (const auto& [option, argument] :
+       {std::pair{"--resume", "resume=True"}, {"--restart", "restart=True"}, {"-o DIR", "folder=DIR"}})
+    if (const auto at = text.find(option); at != std::string::npos)
+      text.replace(at, std::string_view(option).size(), argument);
+  return text;
+}
+
 [[noreturn]] void raise_input_error(const Diagnostics& diagnostics) {
   std::vector<std::string> faults;
-  for (const auto& fault : diagnostics.errors()) faults.push_back(fault.text());
-  set_input_error(faults, "\n" + diagnostics.text());
+  std::string text;
+  for (const auto& fault : diagnostics.errors()) {
+    faults.push_back(in_python(fault.text()));
+    text += (text.empty() ? "" : "\n") + faults.back();
+  }
+  set_input_error(faults, text);
   throw py::error_already_set();
 }
 
@@ -51,7 +68,7 @@ void translate_exception(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const InputFault& fault) {
-    const std::string text = printable_lines(fault.what());
+    const std::string text = in_python(printable_lines(fault.what()));
     set_input_error({text}, text);
   } catch (const std::system_error& error) {
     PyErr_SetString(PyExc_OSError, error.what());
@@ -71,17 +88,48 @@ std::string json_text_of(const py::handle& value) {
   return py::module_::import("json").attr("dumps")(value).cast<std::string>();
 }
 
+struct Given {
+  JsonDocument document;
+  std::vector<std::string> parameters;  ///< names in their order
+};
+
 /// The scene as a document: a dict, or the file of a name.
-std::optional<JsonDocument> document_of(const py::object& scene, Diagnostics& diagnostics) {
-  if (!py::isinstance<py::dict>(scene)) return JsonDocument::read(scene.cast<std::string>(), diagnostics);
-  const auto document = JsonDocument::parse(json_text_of(scene), "scene", diagnostics);
+std::optional<Given> document_of(const py::object& scene, Diagnostics& diagnostics) {
+  const bool is_dict = py::isinstance<py::dict>(scene);
+  auto document = is_dict ? JsonDocument::parse(json_text_of(scene), "scene", diagnostics)
+                          : JsonDocument::read(scene.cast<std::string>(), diagnostics);
   if (!document) return std::nullopt;
-  return JsonDocument::of(document->root(), "scene");  // without the lines of a text that nobody sees
+  std::vector<std::tuple<int, int, std::string>> places;
+  if (const json* named = value_at(document->root(), "/parameters"); named && named->is_object())
+    for (const auto& [name, unused] : named->items()) {
+      const Place place = document->key_place(child_pointer("/parameters", name));
+      places.emplace_back(place.line, place.column, name);
+    }
+  std::sort(places.begin(), places.end());
+  std::vector<std::string> names;
+  for (auto& [line, column, name] : places) names.push_back(std::move(name));
+  if (is_dict) document = JsonDocument::of(document->root(), "scene");  // without the lines of a text that nobody sees
+  return Given{*std::move(document), std::move(names)};
+}
+
+/// Indices of the parameters in the order of the names; those that have none, as they were set, are the last. A node of
+/// a shape NAME is NAME/0, NAME/1, ...
+std::vector<int> in_order(const std::vector<Parameter>& parameters, const std::vector<std::string>& names) {
+  const auto rank = [&](int j) {
+    const std::string& name = parameters[j].name;
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found != names.end() ? found : std::find(names.begin(), names.end(), name.substr(0, name.rfind('/')));
+  };
+  std::vector<int> order(parameters.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return rank(i) < rank(j); });
+  return order;
 }
 
 struct Loaded {
   Simulation simulation;
-  std::string name;  ///< of the file, or "scene"
+  std::string name;        ///< of the file, or "scene"
+  std::vector<int> order;  ///< of the parameters
   std::vector<std::string> notes;
 };
 
@@ -89,18 +137,19 @@ Loaded load(const py::object& scene, const Text& method, const py::dict& set) {
   Diagnostics diagnostics;
   Overrides overrides;
   for (const auto& [pointer, value] : set) overrides.push_back(pointer.cast<std::string>() + "=" + json_text_of(value));
-  const auto document = document_of(scene, diagnostics);
-  auto simulation = document ? prepare(*document, overrides, method, diagnostics) : std::nullopt;
+  const auto given = document_of(scene, diagnostics);
+  auto simulation = given ? prepare(given->document, overrides, method, diagnostics) : std::nullopt;
   if (!simulation) raise_input_error(diagnostics);
   std::vector<std::string> notes;
   for (const auto& note : diagnostics.notes()) notes.push_back(note.text());
-  return {*std::move(simulation), document->file(), std::move(notes)};
+  auto order = in_order(simulation->problem->model.scene.parameters, given->parameters);
+  return {*std::move(simulation), given->document.file(), std::move(order), std::move(notes)};
 }
 
 // ---- what the package calls -----------------------------------------------------------------------------------------
 
 py::dict run(const py::object& scene, const Text& method, const py::dict& set, const std::optional<Path>& folder) {
-  auto [simulation, name, notes] = load(scene, method, set);
+  auto [simulation, name, order, notes] = load(scene, method, set);
   std::string document;
   RunResult run;
   {
@@ -111,7 +160,7 @@ py::dict run(const py::object& scene, const Text& method, const py::dict& set, c
     if (folder) remove_run(*folder);
     document = json_text(folder ? write_result(*folder, simulation, result)
                                 : result_json(result, canonical_text(simulation.input)));
-    run = gather(std::move(simulation), std::move(result));
+    run = gather(std::move(simulation), std::move(result), std::move(order));
   }
   py::dict out = arrays_of(py::cast(std::move(run)));
   out["notes"] = notes;

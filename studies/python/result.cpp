@@ -40,9 +40,10 @@ ContactTable contact_table(const Problem& problem, const State<double>& state, i
       tangents = std::max(tangents, model.points[p].tangents);
     }
   const auto count = static_cast<Eigen::Index>(points.size());
-  ContactTable table{{}, {}, Vector<double>(count), Vector<double>(count), Vector<double>(count), {}, {}, {}};
+  ContactTable table{{}, {}, Vector<double>(count), Vector<double>(count), Vector<double>(count), {}, {}, {}, {}};
   table.traction.resize(model.dimension, count);
   table.shear = table.slip = Matrix<double>::Zero(tangents, count);
+  table.tangent = Matrix<double>::Zero(static_cast<Eigen::Index>(tangents) * model.dimension, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const int p = points[i];
     const auto& point = model.points[p];
@@ -55,14 +56,17 @@ ContactTable contact_table(const Problem& problem, const State<double>& state, i
     table.shear.col(i).head(point.tangents) = -state.contact.traction.segment(point.multiplier + 1, point.tangents);
     table.slip.col(i).head(point.tangents) =
         state.contact.slip.segment(point.tangents ? tangential_offset(model, p) : 0, point.tangents);
+    for (int a = 0; a < point.tangents; ++a)
+      table.tangent.col(i).segment(static_cast<Eigen::Index>(a) * model.dimension, model.dimension) =
+          geometry_in(state.contact, problem.slots, p).tangents.col(a);
   }
   return table;
 }
 
 }  // namespace
 
-RunResult gather(Simulation simulation, CaseResult result) {
-  RunResult run{std::move(simulation), std::move(result), {}, {}, {}, {}, {}};
+RunResult gather(Simulation simulation, CaseResult result, std::vector<int> order) {
+  RunResult run{std::move(simulation), std::move(result), {}, {}, {}, {}, {}, std::move(order)};
   gather_series(run);
   const auto& model = run.simulation.problem->model;
   for (const auto& step : run.result.steps) {

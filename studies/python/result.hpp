@@ -19,6 +19,7 @@ struct ContactTable {
   Matrix<double> traction;           ///< dimension x points: force per area on the slave
   Matrix<double> shear;              ///< tangents x points: its part along them; no rows where frictionless
   Matrix<double> slip;               ///< tangents x points, in this increment; no rows where frictionless
+  Matrix<double> tangent;            ///< (tangents dimension) x points: unit vectors, one below the other
 };
 
 /// Nodes of the elements of one body, in the numbering of all nodes.
@@ -37,9 +38,10 @@ struct RunResult {
   std::vector<Matrix<double>> sensitivities;  ///< per response: steps x parameters; not a number where none is known
   std::vector<std::vector<ContactTable>> contacts;  ///< per step and contact
   std::vector<ElementTable> elements;               ///< per body
+  std::vector<int> order;                           ///< of the parameters, as the scene names them
 };
 
 /// Gathers the arrays of a result.
-RunResult gather(Simulation simulation, CaseResult result);
+RunResult gather(Simulation simulation, CaseResult result, std::vector<int> order);
 
 }  // namespace stickslip

@@ -241,7 +241,9 @@ Study read_study(const std::filesystem::path& directory) {
   study.picture = read_json(directory / "picture.json");
 
   if (!std::filesystem::exists(directory / "results.jsonl"))
-    throw InputFault((directory / "results.jsonl").string() + ": there is no such file");
+    throw InputFault(exists(directory / "result.json")
+                         ? directory.string() + ": holds a run and no study; its result is result.json"
+                         : (directory / "results.jsonl").string() + ": there is no such file");
   StoredRows stored =
       read_rows(directory, [first = true](json& row) mutable { drop_bulk(row, std::exchange(first, false)); });
   study.faults = stored.faults();

@@ -156,10 +156,10 @@ void name_floating_body(CaseResult& result) {
       first->name, first->first, first->motion);
 }
 
-/// Whether the run ended with a tangent that derivatives can be taken of.
+/// Whether the run ended with a tangent that was factorised.
 bool has_tangent(const Trajectory<double>& trajectory) {
   const Status status = trajectory.status;
-  return !trajectory.increments.empty() && status != Status::singular && status != Status::not_finite &&
+  return trajectory.counters.newton > 0 && status != Status::singular && status != Status::not_finite &&
          status != Status::no_equilibrium;
 }
 
@@ -339,9 +339,8 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   mark_inaccurate(reader.accuracy(), result.trajectory);
   name_loose_body(problem->model, result.trajectory);
   explain_failed_contact(*problem, result.trajectory);
-  if (has_tangent(result.trajectory)) {
-    if (result.trajectory.counters.newton > 0)  // otherwise nothing was factorised
-      result.condition_estimate = workspace.engine->condition_estimate();
+  if (has_tangent(result.trajectory)) result.condition_estimate = workspace.engine->condition_estimate();
+  if (result.trajectory.solved_count() > 0) {  // a step that failed takes nothing from those before
     differentiate_case(workspace, derivatives, result);
     result.sensitivity_body_solves = workspace.engine->holdings().body_solves - result.engine.body_solves;
   }

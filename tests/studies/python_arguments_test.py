@@ -50,6 +50,27 @@ class Arguments(unittest.TestCase):
         scene = types.MappingProxyType({"bodies": 1j})
         self.refused(TypeError, lambda: stickslip.run(scene), "scene/bodies is 1j (complex)")
 
+    def test_what_is_no_finite_number_is_named(self):
+        for value in (float("nan"), np.inf, np.array([1.0, -np.inf])):
+            self.refused(stickslip.InputError, lambda: stickslip.run(STOP, set={"/time/end": value}), "set['/time/end']",
+                         "must be a finite number")
+        self.refused(stickslip.InputError, lambda: stickslip.run({"time": {"end": np.nan}}), "scene/time/end is nan")
+
+    def test_a_text_of_json_is_no_path(self):
+        self.refused(stickslip.InputError, lambda: stickslip.run('{"title": "a"}'), "json.loads(text)")
+
+    def test_faults_speak_of_arguments(self):
+        for call, words in (
+                (lambda: stickslip.run(STOP, set={"/time/end": -1}), "set /time/end=-1: "),
+                (lambda: stickslip.run(STOP, method="magic"), "method magic: "),
+                (lambda: stickslip.run(SCENES / "slider.json", set={"mu": 0.1}),
+                 "the parameter mu is /contacts/sole/friction")):
+            self.refused(stickslip.InputError, call, words)
+        with tempfile.TemporaryDirectory() as folder:
+            stickslip.run(STOP, folder=folder)
+            self.refused(stickslip.InputError, lambda: stickslip.load_study(folder), "holds a run and no study")
+            self.refused(stickslip.InputError, lambda: stickslip.study(STUDY, folder), "folder=DIR writes to another")
+
     def test_a_text_with_a_surrogate_is_named(self):
         self.refused(stickslip.InputError, lambda: stickslip.run({"title": "\ud800"}), "scene/title", "surrogate")
         self.refused(stickslip.InputError, lambda: stickslip.run({"\ud800": 1}), "a key of scene", "surrogate")
@@ -141,8 +162,9 @@ class Arguments(unittest.TestCase):
         result = stickslip.run(STOP)
         for value in [3, None, "x", {}]:
             self.refused(TypeError, lambda: plots.tractions(value), "result is ", "stickslip.Result")
-        for value in [3, None, "x", {}]:
+        for value in [3, None, {}]:
             self.refused(TypeError, lambda: plots.work_precision(value), "study is ", "load_study()")
+        self.refused(stickslip.InputError, lambda: plots.work_precision("x"), "x/results.jsonl: there is no such file")
         for name in ("of", "against", "work"):
             self.refused(TypeError, lambda: plots.work_precision([{}], **{name: b"x"}), f"{name} is b'x' (bytes)")
         self.refused(TypeError, lambda: plots.tractions(result, ax="x"), "axes of matplotlib")

@@ -53,6 +53,14 @@ class Examples(unittest.TestCase):
         self.assertTrue(agree)
         self.assertLess(after, before / 5)
 
+    @unittest.skipUnless(importlib.util.find_spec("scipy"), "python3-scipy is not installed")
+    def test_a_fit_by_scipy_survives_trials_without_a_solution(self):
+        import fit
+        found, failed = fit.main()
+        self.assertGreater(failed, 0)
+        self.assertTrue(found.success and np.isfinite(found.cost))
+        np.testing.assert_allclose(found.x, list(fit.HIDDEN.values()), rtol=1e-6)
+
     def test_a_peak_is_as_sensitive_to_an_imperfection_as_differences_and_koiter_say(self):
         import imperfection
         rows, power = imperfection.main()

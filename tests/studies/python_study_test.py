@@ -228,7 +228,9 @@ class Figures(InFolder):
         self.assertEqual(set(lines), {"pressure", "shear", "slip"})
         np.testing.assert_array_equal(lines["pressure"].get_xdata(), x[order])
         np.testing.assert_array_equal(lines["pressure"].get_ydata(), touch["pressure"][order])
-        np.testing.assert_array_equal(lines["shear"].get_ydata(), touch["shear"][order, 0])
+        along_x = np.sign(touch["tangent"][order, 0, 0])  # the tangent of the contact runs against x
+        self.assertEqual(set(along_x), {-1.0})
+        np.testing.assert_array_equal(lines["shear"].get_ydata(), touch["shear"][order, 0] * along_x)
         self.assertEqual(len(lines["slip"].get_xdata()), int((touch["state"] == 2).sum()))
         self.assertGreater(len(lines["slip"].get_xdata()), 0)
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("x", "force per area"))

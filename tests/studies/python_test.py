@@ -290,6 +290,21 @@ class Input(unittest.TestCase):
             of(iterate=True)
         self.assertIsNone(stickslip.run(plate(3)).failed_at)
 
+    def test_steps_before_a_failed_one_keep_their_derivatives(self):
+        scene = plate(3, 4)
+        scene["loads"][0]["traction"] = [3, 0]  # slides away beyond half of it
+        scene["loads"].append({"on": "block.top", "traction": [0, -5]})
+        result = stickslip.run(scene, check=False)
+        self.assertEqual(result.status, "no_equilibrium")
+        solved = result.times != result.failed_at
+        self.assertGreater(solved.sum(), 0)
+        np.testing.assert_array_equal(np.isfinite(result.jacobian("shift")).all(axis=1), solved)
+        scene["time"] = {"end": result.times[solved][-1], "steps": int(solved.sum())}
+        for load in scene["loads"]:
+            load.setdefault("history", [[0, 1], [1, 1]])
+        shorter = stickslip.run(scene)
+        np.testing.assert_allclose(result.jacobian("shift")[solved], shorter.jacobian("shift"), rtol=1e-9, atol=1e-15)
+
     def test_a_failed_solve_is_raised(self):
         scene = plate(3)
         self.assertTrue(stickslip.run(scene).converged)
@@ -300,6 +315,76 @@ class Input(unittest.TestCase):
         self.assertEqual(str(caught.exception), f"{result.status}: {result.message}")
         self.assertFalse(result.converged)
         self.assertEqual(str(pickle.loads(pickle.dumps(caught.exception))), str(caught.exception))
+
+
+class Parameters(unittest.TestCase):
+    def shaped(self, **more):
+        scene = plate()
+        scene["parameters"] = {"z": "/contacts/sole/friction",
+                               "h": {"shape": {"side": "block.top", "direction": [0, 1], "fixed": "block.bottom", **more}},
+                               "a": "/loads/0/traction/1"}
+        scene["objectives"] = {"J": {"of": "shift", "at": 1}}
+        return scene
+
+    def test_their_order_is_that_of_the_scene_everywhere(self):
+        scene = self.shaped(each="node")
+        names = ["z", *(f"h/{n}" for n in range(13)), "a"]
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "scene.json"
+            file.write_text(json.dumps(scene))
+            for result in (stickslip.run(scene), stickslip.run(file)):
+                self.assertEqual(list(result.parameters), names)
+                self.assertEqual(list(result.sensitivities["shift"]), names)
+                self.assertEqual(list(result.objectives["J"]["gradient"]), names)
+                self.assertEqual(result.gradient("J").tolist(), list(result.objectives["J"]["gradient"].values()))
+                np.testing.assert_allclose(result.jacobian("shift")[-1], result.gradient("J"), rtol=1e-12)
+                self.assertEqual(result.parameters["z"], 0.3)
+                self.assertEqual(result.jacobian("shift").shape, (2, len(names)))
+        for call in (lambda: result.gradient("K"), lambda: result.jacobian("K")):
+            self.assertRaises(KeyError, call)
+
+    def test_a_shape_has_a_value_and_differences_of_it_are_its_derivative(self):
+        pointer, h = "/parameters/h/shape/value", 1e-4
+        for value in (0, 0.2):
+            at = lambda x: stickslip.run(self.shaped(), set={pointer: x})
+            result, near = at(value), (at(value + h).responses["shift"] - at(value - h).responses["shift"]) / (2 * h)
+            np.testing.assert_allclose(result.sensitivities["shift"]["h"], near, rtol=1e-5)
+            self.assertEqual(result.parameters["h"], value)
+            self.assertEqual(result.document["parameters"]["h"], value)
+            self.assertAlmostEqual(result.coordinates[:, 1].max(), 2 + value)
+            scene = self.shaped(value=value)
+            scene["sensitivity"] = {"mode": "adjoint"}
+            np.testing.assert_allclose(stickslip.run(scene).gradient("J"), result.gradient("J"), rtol=1e-9)
+        taller = plate()
+        taller["bodies"]["block"]["mesh"]["box"]["max"][1] = 2.2  # the same nodes: free sides follow in straight lines
+        np.testing.assert_allclose(result.responses["shift"], stickslip.run(taller).responses["shift"], rtol=1e-9)
+
+    def test_a_value_of_each_node_is_a_list(self):
+        values = [0.01 * n for n in range(13)]
+        result = stickslip.run(self.shaped(each="node", value=values))
+        top = result.coordinates[:, 1] > 1.99
+        np.testing.assert_allclose(np.sort(result.coordinates[top, 1]), 2 + np.array(values), rtol=1e-14)
+
+    def test_a_value_that_cannot_be_is_refused(self):
+        for more, words in (({"value": -2}, "inverted or flat"), ({"value": "x"}, "must be a number"),
+                            ({"value": [1], "each": "node"}, "13 numbers")):
+            with self.assertRaisesRegex(stickslip.InputError, words):
+                stickslip.run(self.shaped(**more))
+        scene = self.shaped(value=0.1)
+        scene["parameters"]["top"] = "/bodies/block/mesh/box/max/1"
+        with self.assertRaisesRegex(stickslip.InputError, "/parameters/top: .* leave out the value"):
+            stickslip.run(scene)
+
+    def test_tangents_and_shear_are_the_friction_in_the_traction(self):
+        contact = stickslip.run(plate()).contact("sole")
+        friction = np.einsum("pt,ptd->pd", contact["shear"], contact["tangent"])
+        np.testing.assert_allclose(friction[:, 0], contact["traction"][:, 0], rtol=1e-12)
+
+    def test_adjoint_mode_says_what_it_has_not(self):
+        scene = self.shaped()
+        scene["sensitivity"] = {"mode": "adjoint"}
+        with self.assertRaisesRegex(ValueError, "adjoint mode has no derivatives of fields"):
+            stickslip.run(scene).displacement_derivative("a")
 
 
 class Surroundings(unittest.TestCase):

@@ -5,6 +5,7 @@ A wrong type is a TypeError, a value that no scene or file can have an InputErro
 
 import os
 from collections.abc import Mapping
+from math import isfinite
 from operator import index
 from os import PathLike
 from typing import Any, Dict, NoReturn, Optional
@@ -97,6 +98,8 @@ def scene(value: Any) -> Any:
     """The path of a scene, or what JSON makes of its content."""
     if isinstance(value, Mapping):
         return plain(value, "scene")
+    if isinstance(value, str) and value.lstrip().startswith("{") and not os.path.exists(value):
+        refuse("scene is a JSON text; pass json.loads(text), or the path of a scene file")
     return path(value, "scene", "the path of a scene file, or a dict of the same content")
 
 
@@ -117,10 +120,12 @@ def plain(value: Any, name: str) -> Any:
 
 
 def _plain(value: Any, name: str) -> Any:
+    if isinstance(value, float) and not isfinite(value):
+        refuse(f"{name} is {value}; must be a finite number")
     if value is None or isinstance(value, (bool, int, float)):
         return value
-    if isinstance(value, str):
-        return encodable(value, name)
+    if isinstance(value, (str, PathLike)):
+        return encodable(os.fsdecode(value), name)
     if isinstance(value, Mapping):
         return {text(key, f"a key of {name}", "str"): _plain(of, f"{name}/{key}") for key, of in value.items()}
     if isinstance(value, (list, tuple)):

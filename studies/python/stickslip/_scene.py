@@ -65,11 +65,14 @@ class Result:
     failed_at : float or None
         Time of the step that has no solution. Its responses and derivatives are NaN, for the last iterate of Newton's
         method is no answer; `displacement` and `contact` give it with `iterate=True` alone.
+    parameters : dict of float
+        Value of each parameter, by name, in the order in which the scene names them; of a shape with "each": "node" its
+        nodes NAME/0, NAME/1, ... along the side. All derivatives by parameters have this order.
     responses : dict of ndarray, (steps,)
-        By name.
+        By name. A reaction is the force of the support on the body, a contact force that on the slave.
     sensitivities : dict of dict of ndarray, (steps,)
         By response and parameter: derivative of the response, as its method computed it, by the parameter; NaN if it
-        is not known.
+        is not known, as in adjoint mode, which has those of `objectives` alone. `jacobian` gives them as one array.
     coordinates : ndarray, (nodes, dimension)
         Initial.
     elements : dict of ndarray of int, (elements, nodes of one)
@@ -83,6 +86,7 @@ class Result:
     title: str
     method: str
     times: np.ndarray
+    parameters: Dict[str, float]
     failed_at: Optional[float]
     responses: Arrays
     sensitivities: Dict[str, Arrays]
@@ -99,6 +103,7 @@ class Result:
         self.notes = state["notes"]
         self.times = state["times"]
         self.failed_at = state["failed_at"]
+        self.parameters = _ByName("parameter", state["parameters"])
         self.responses = _ByName("response", state["responses"])
         self.sensitivities = _ByName("response", {response: _ByName("parameter", of)
                                                   for response, of in state["sensitivities"].items()})
@@ -121,8 +126,34 @@ class Result:
 
     @property
     def objectives(self) -> Dict[str, Dict[str, Any]]:
-        """By name: `value`, and `gradient` by parameter. Empty if the scene has none."""
-        return self.document.get("objectives", {})
+        """By name: `value`, a float or None if the run failed, and `gradient`, a dict of float by parameter, in the order
+        of `parameters`; where a step makes its sides differ also `one_sided`, a dict of [from below, from above]. Empty
+        if the scene has none."""
+        objectives = self.document.get("objectives", {})
+        for objective in objectives.values():
+            for key in ("gradient", "one_sided"):
+                if key in objective:
+                    objective[key] = {name: objective[key][name] for name in self.parameters}
+        return objectives
+
+    def gradient(self, objective: str) -> np.ndarray:
+        """Derivative of an objective by the parameters, (parameters,), in the order of `parameters`; NaN if it is not
+        known. KeyError if there is no such objective."""
+        _arguments.text(objective, "objective", "the name of an objective")
+        objectives = self.objectives
+        if objective not in objectives:
+            raise _no_name("objective", objective, objectives)
+        by = objectives[objective].get("gradient", {})
+        return np.array([by.get(name) for name in self.parameters], dtype=float)
+
+    def jacobian(self, response: str) -> np.ndarray:
+        """Derivatives of a response by the parameters, (steps, parameters), in the order of `parameters`; NaN where they
+        are not known. KeyError if there is no such response."""
+        _arguments.text(response, "response", "the name of a response")
+        if response not in self.responses:
+            raise _no_name("response", response, self.responses)
+        by = [self.sensitivities[response][name] for name in self.parameters]
+        return np.column_stack(by) if by else np.empty((len(self.times), 0))
 
     @property
     def contacts(self) -> List[str]:
@@ -137,7 +168,8 @@ class Result:
     def one_sided(self, response: str, parameter: str) -> np.ndarray:
         """A derivative from below and from above at each step, (steps, 2).
 
-        If it has one value, both are that; NaN if a side has none, or is not known. KeyError if there is no such
+        If the two are one value, both columns have it. NaN where a side has no derivative, or it is not known, as in
+        adjoint mode where nothing ties. KeyError if there is no such
         response or parameter.
         """
         _arguments.text(response, "response", "the name of a response")
@@ -175,7 +207,8 @@ class Result:
         if parameter in self._displacement_derivatives:
             return self._displacement_derivatives[parameter]
         if any(parameter in of for of in self.sensitivities.values()):
-            raise ValueError(f"the derivatives were not found: {self.message}")
+            reason = self.message or 'adjoint mode has no derivatives of fields; use "mode": "direct"'
+            raise ValueError(f"the derivatives were not found: {reason}")
         raise _no_name("parameter", parameter, self._displacement_derivatives)
 
     def contact(self, name: str, step: int = -1, iterate: bool = False) -> Arrays:
@@ -185,7 +218,8 @@ class Result:
         state : (points,), 0 open, 1 stick, 2 slip
         pressure : (points,), force per area, positive in compression
         traction : (points, dimension), force per area on the slave, pressure and friction together
-        shear : (points, tangents), its part along the contact's tangents; it opposes the slip
+        tangent : (points, tangents, dimension), unit vectors along the contact; on a floor whose normal is +y that is -x
+        shear : (points, tangents), the part of traction along the tangents; it opposes the slip
         gap : (points,), negative: penetration
         slip : (points, tangents), of the last increment, along the same tangents
         area : (points,), tributary area; a force is the sum of traction times area
@@ -277,7 +311,10 @@ def run(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {},
         Where result.json and the fields (.vtu) are written; None: nowhere.
     check
         Raise NotConverged if the run failed. If False, the status of the result says so, and the step without a
-        solution has NaN for its responses and derivatives.
+        solution has NaN for its responses and derivatives; the steps before it have theirs.
+
+    With {"sensitivity": {"mode": "adjoint"}} in the scene, derivatives are those of the objectives alone
+    (`Result.gradient`), at a cost that does not grow with the number of parameters.
 
     Raises InputError with all faults of the scene, TypeError if an argument is of another type, OSError if the
     disk refuses. Other threads of Python run while it solves; Ctrl-C ends it after the step at hand.

@@ -130,7 +130,9 @@ def _number(value: Any) -> float:
 
 
 def rows_of(table: Table) -> List[Row]:
-    """The rows of what load_study() gives, or of a part of it, as dicts."""
+    """The rows of what load_study() gives, or of a part of it, as dicts; of a path those of its study."""
+    if isinstance(table, (str, bytes, PathLike)):
+        return rows_of(load_study(table))
     if hasattr(table, "to_dict") and hasattr(table, "columns"):
         return table.to_dict("records")
     if not isinstance(table, (list, tuple)) or not all(isinstance(row, dict) for row in table):

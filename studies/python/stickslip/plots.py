@@ -26,8 +26,8 @@ def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax:
               iterate: bool = False) -> Any:
     """Pressure, and shear if there is friction, along a contact at the end of a step; points that slip are marked.
 
-    The abscissa is the initial coordinate along which the contact is longest. Shear in 2D has its sign, that of the
-    force on the slave along the contact's tangent; in 3D, which has two tangents, it is its size. `contact` may be left
+    The abscissa is the initial coordinate along which the contact is longest. Shear in 2D has the sign of
+    the force on the slave along this coordinate; in 3D, which has two tangents, it is its size. `contact` may be left
     out if the scene has one. A step without a solution is refused (ValueError); `iterate=True` draws its last iterate,
     dashed and named so.
     """
@@ -47,7 +47,10 @@ def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax:
     ax = plt.subplots()[1] if ax is None else _axes(ax)
     ax.plot(x, pressure, line, color="k", label="pressure")
     if tangents := table["shear"].shape[1]:
-        shear = table["shear"][order, 0] if tangents == 1 else np.linalg.norm(table["shear"][order], axis=1)
+        if tangents == 1:
+            shear = table["shear"][order, 0] * np.where(table["tangent"][order, 0, axis] < 0, -1, 1)
+        else:
+            shear = np.linalg.norm(table["shear"][order], axis=1)
         slips = state == STATES.index("slip")
         ax.plot(x, shear, line, color="tab:red", label="shear" if tangents == 1 else "|shear|")
         ax.plot(x[slips], shear[slips], "o", color="tab:red", markersize=4, label="slip")
@@ -104,7 +107,7 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
     Parameters
     ----------
     study
-        What `load_study` gives, or some of its rows.
+        What `load_study` gives, or some of its rows, or the folder of a study.
     of
         "response" or "sensitivity": the worst error of all responses, or of all derivatives; or one of them,
         "response:press", "sensitivity:press/mu".
@@ -137,7 +140,8 @@ def work_precision(study: Table, of: str = "response", against: str = "enforceme
             curves.setdefault((row["method"], row["curve"], variant), []).append(
                 (row["along"], row[column], max(max(errors), EXACT), row["converged"]))
     if not curves:
-        raise ValueError(f"no row of the study has an error {prefix}... and {column}")
+        raise ValueError(f"no row of the study has an error {prefix}... and {column}; of is response, sensitivity, or one "
+                         f"of them, as response:press")
     ax = plt.subplots(layout="constrained")[1] if ax is None else _axes(ax)
     several = len({variant for _, _, variant in curves}) > 1
     drawn: dict = {}  # curves of each method, which share its colour
