@@ -39,7 +39,7 @@ class ShapeExtension {
 /// Of one shape motion of the scene.
 struct DesignVelocity {
   int body = 0;
-  int slot = 0;            ///< of the parameter in Scene::numbers; its value is 0
+  int slot = 0;            ///< of the parameter in Scene::numbers
   std::vector<int> moved;  ///< nodes of the body that move by the whole of it
   std::vector<double> direction;
   std::shared_ptr<const ShapeExtension> extension;

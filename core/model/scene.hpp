@@ -126,7 +126,7 @@ struct Response {
   int axis() const { return static_cast<int>(component) - static_cast<int>(Component::x); }
 };
 
-/// A side of a body, or one node of it, moves along a direction: a shape parameter, whose slot holds the distance, 0.
+/// A side of a body, or one node of it, moves along a direction: a shape parameter, whose slot holds the distance.
 struct ShapeMotion {
   int body = 0;
   std::string side;   ///< side expression
