@@ -29,6 +29,7 @@
 #include "sensitivity/progress.hpp"
 #include "sensitivity/pull_back.hpp"
 #include "sensitivity/schemes.hpp"
+#include "sensitivity/ties/scales.hpp"
 
 namespace stickslip {
 
@@ -155,7 +156,7 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
   for (std::size_t p = 0; p < rho.size(); ++p) {
     stiffest = std::max(stiffest, rho[p].normal);
     rho_over_k = std::max(rho_over_k, rho[p].normal / problem.slots.stiffness[p]);
-    elastic = std::max(elastic, problem.slots.stiffness[p] / problem.slots.geometry[p].area);
+    elastic = std::max(elastic, elastic_traction(problem.slots, static_cast<int>(p)));
   }
   constexpr int patience = 10;
   constexpr double far = 4, most_rounding = 1e-9;

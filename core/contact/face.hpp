@@ -1,18 +1,19 @@
-/// Faces of a surface in space: triangles, and bilinear quadrilaterals. The position y(s, t) is linear in the positions of
-/// the corners, so forces and derivatives have the weights N_i:
+/// Faces of a surface in space: triangles, and bilinear quadrilaterals. The position y(s, t) is linear in the positions
+/// of the corners, so forces and derivatives have the weights N_i:
 ///
 ///   triangle        N = 1 - s - t, s, t                              s, t >= 0, s + t <= 1
 ///   quadrilateral   N = (1-s)(1-t), s (1-t), s t, (1-s) t            0 <= s, t <= 1
 ///
-/// Corners are counter-clockwise seen from outside of the solid, so y_s x y_t points out of it. The place that is closest
-/// to x is inside of the face, on an edge, or at a corner: two, one or no coordinates are free, and along each free
-/// direction d
+/// Corners are counter-clockwise seen from outside of the solid, so y_s x y_t points out of it. The place that is
+/// closest to x is inside of the face, on an edge, or at a corner: two, one or no coordinates are free, and along each
+/// free direction d
 ///
 ///   (x - y) . (y_s d_s + y_t d_t) = 0
 ///
 /// The search solves this in double. face_foot() gives the place its derivatives.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -36,6 +37,14 @@ struct FacePlace {
     return nodes == other.nodes && corners == other.corners && part == other.part && number == other.number;
   }
 };
+
+/// Positions of the corners of a face; `position`: node -> position. Of a triangle the last stands for nothing.
+template <class T, class Position>
+std::array<Vec<T, 3>, 4> corners_of(const FacePlace& face, const Position& position) {
+  std::array<Vec<T, 3>, 4> corner;
+  for (int k = 0; k < 4; ++k) corner[k] = position(face.nodes[std::min(k, face.corners - 1)]);
+  return corner;
+}
 
 /// Coordinates (s, t) of a corner, counted on from the first beyond the last.
 inline Vec<double, 2> face_corner(int corners, int number) {

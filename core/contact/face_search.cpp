@@ -34,7 +34,7 @@ FaceSearch::FaceSearch(const Points<double>& points, const std::vector<std::vect
     auto& border = border_.emplace_back();
     for (int k = 0; k < face.corners; ++k)
       border[k] = count[std::minmax(face.nodes[k], face.nodes[(k + 1) % face.corners])] == 1;
-    const auto corner = corners_of(face);
+    const auto corner = corners(face);
     bool is_finite = true;
     for (int k = 0; k < face.corners; ++k) {
       is_finite &= corner[k].allFinite();
@@ -43,17 +43,15 @@ FaceSearch::FaceSearch(const Points<double>& points, const std::vector<std::vect
     if (is_finite) numbers.push_back(static_cast<int>(border_.size()) - 1);
   }
   boxes_ = BoxTree<3>(std::move(numbers), [this](int f) {
-    const auto corner = corners_of(faces_[f]);
+    const auto corner = corners(faces_[f]);
     Bounds<3> bounds{corner[0], corner[0]};
     for (int k = 1; k < faces_[f].corners; ++k) bounds.take_in({corner[k], corner[k]});
     return bounds;
   });
 }
 
-std::array<Vec<double, 3>, 4> FaceSearch::corners_of(const FacePlace& face) const {
-  std::array<Vec<double, 3>, 4> corner;
-  for (int k = 0; k < 4; ++k) corner[k] = points_.col(face.nodes[std::min(k, face.corners - 1)]);
-  return corner;
+std::array<Vec<double, 3>, 4> FaceSearch::corners(const FacePlace& face) const {
+  return corners_of<double>(face, [this](int node) -> Vec<double, 3> { return points_.col(node); });
 }
 
 std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x) const {
@@ -61,7 +59,7 @@ std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x) const {
   double least = std::numeric_limits<double>::infinity();
   const auto skips = [&](const Bounds<3>& box) { return box.distance(x) > least + band_; };
   boxes_.visit(x, skips, [&](int f) {
-    near.push_back({nearest_of_face(faces_[f], corners_of(faces_[f]), x), f});
+    near.push_back({nearest_of_face(faces_[f], corners(faces_[f]), x), f});
     least = std::min(least, near.back().distance);
   });
   std::erase_if(near, [&](const Near& at) { return at.distance > least + band_; });
@@ -77,7 +75,7 @@ std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x) const {
 
 bool FaceSearch::is_past_border(const std::vector<Near>& places, const Vec<double, 3>& x) const {
   for (const auto& near : places) {
-    const auto corner = corners_of(near.place);
+    const auto corner = corners(near.place);
     for (int k = 0; k < near.place.corners; ++k) {
       if (!border_[near.face][k]) continue;
       const Vec<double, 3> along = (corner[(k + 1) % near.place.corners] - corner[k]).normalized();

@@ -24,7 +24,7 @@ class FaceSearch {
     int face;
   };
   bool is_past_border(const std::vector<Near>& places, const Vec<double, 3>& x) const;
-  std::array<Vec<double, 3>, 4> corners_of(const FacePlace& face) const;
+  std::array<Vec<double, 3>, 4> corners(const FacePlace& face) const;
 
   Points<double> points_;
   std::vector<FacePlace> faces_;

@@ -70,9 +70,9 @@ void slide_off(PointGeometry<T>& geometry, const Vec<T, 2>& x, const Vec<T, 2>& 
   geometry.weights = std::move(weights);
 }
 
-/// Geometry against the place that is closest to x, on each face that has it: the mean over these faces, of which an edge
-/// has two and a corner several. Each has the same weights there, but other derivatives, as on the two sides of a vertex
-/// in the plane. The normal is the mean of theirs.
+/// Geometry against the place that is closest to x, on each face that has it: the mean over these faces, of which an
+/// edge has two and a corner several. Each has the same weights there, but other derivatives, as on the two sides of a
+/// vertex in the plane. The normal is the mean of theirs.
 ///
 ///   nodes     slave node, then the nodes of all faces, in the order of the weights
 ///   position  node -> position
@@ -85,9 +85,7 @@ PointGeometry<T> against_faces(const Vec<T, 3>& x, const std::vector<FacePlace>&
   const T share(1.0 / static_cast<double>(faces.size()));
   Vec<T, 3> normal = Vec<T, 3>::Constant(T(0)), foot = normal;
   for (const auto& face : faces) {
-    std::array<Vec<T, 3>, 4> corner;
-    for (int k = 0; k < 4; ++k) corner[k] = position(face.nodes[std::min(k, face.corners - 1)]);
-    const auto at = face_foot<T>(face, x, corner);
+    const auto at = face_foot<T>(face, x, corners_of<T>(face, position));
     normal += at.normal;
     foot += at.position * share;
     for (int k = 0; k < face.corners; ++k)

@@ -22,9 +22,9 @@ Mesh grid(const std::array<int, 2>& cells, const std::string& element);
 /// along the first direction, front back along the second, bottom top along the third.
 Mesh grid(const std::array<int, 3>& cells, const std::string& element);
 
-/// Appends a cell of space, as one hexahedron, or as six tetrahedra around its diagonal from corner 0 to corner 6. `mirrored`:
-/// along which directions the cell is turned over before. Neighbours are turned over in turn, so the diagonals of a face
-/// that they share agree, and no direction is preferred.
+/// Appends a cell of space, as one hexahedron, or as six tetrahedra around its diagonal from corner 0 to corner 6.
+/// `mirrored`: along which directions the cell is turned over before. Neighbours are turned over in turn, so the
+/// diagonals of a face that they share agree, and no direction is preferred.
 void append_block(Mesh&, const std::array<int, 8>& nodes, const std::array<bool, 3>& mirrored);
 
 /// The nodes of the boundary of a mesh in space that hold, and its faces all of whose nodes do.

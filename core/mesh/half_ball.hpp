@@ -1,17 +1,17 @@
 /// Half ball, fine at the pole of its surface and coarse at its flat side: a half disk (core/mesh/half_disk.hpp) in
 /// space.
 ///
-/// A block sits on the surface around the pole, square seen along the axis, which is parallel to z. Shells of cells grow
-/// from its other five faces to the flat side. Seen along any of the two middle planes it is the half disk:
+/// A block sits on the surface around the pole, square seen along the axis, which is parallel to z. Shells of cells
+/// grow from its other five faces to the flat side. Seen along any of the two middle planes it is the half disk:
 ///
 ///     along the surface, pole to edge: block_width + shells = cells[0]
 ///     along the axis, pole to centre: block_height + shells = cells[1]
 ///
 /// The faces of the block bulge, so that its edges leave room for the cells around them. Over all grades from 1 to 100
-/// the corners of all hexahedra keep a volume above 0.5 with as many cells along the surface as along the axis, and above
-/// 0.2 with up to one and a half times as many: that of the parallelepiped of unit vectors along the edges, 1 at a right
-/// angle. Sides `surface`, on the sphere, and `flat`; a half ball facing up is the mirror image of one facing down, node by
-/// node.
+/// the corners of all hexahedra keep a volume above 0.5 with as many cells along the surface as along the axis, and
+/// above 0.2 with up to one and a half times as many: that of the parallelepiped of unit vectors along the edges, 1 at
+/// a right angle. Sides `surface`, on the sphere, and `flat`; a half ball facing up is the mirror image of one facing
+/// down, node by node.
 #pragma once
 
 #include <algorithm>

@@ -67,8 +67,8 @@ struct HalfDiskLayout {
   int ring(int l, int j) const;
 };
 
-/// The block's inner corner, across the axis and along it from the pole, of unit radius. `on_arc`: where its edge begins,
-/// at the angle `opening` from the pole; `height`: of the block along the axis.
+/// The block's inner corner, across the axis and along it from the pole, of unit radius. `on_arc`: where its edge
+/// begins, at the angle `opening` from the pole; `height`: of the block along the axis.
 template <class T>
 Vec<T, 2> inner_corner(const Vec<T, 2>& on_arc, const T& opening, const T& height) {
   using std::cos, std::pow, std::sin;

@@ -195,9 +195,9 @@ class Import {
     return "line " + place.substr(0, place.find(':'));
   }
 
-  /// Whether no two elements overlap by their nodes. Elements are counter-clockwise (right-handed), so two with a common
-  /// side in the same direction lie on the same side of it; an element that is listed twice has all sides in common with
-  /// itself.
+  /// Whether no two elements overlap by their nodes. Elements are counter-clockwise (right-handed), so two with a
+  /// common side in the same direction lie on the same side of it; an element that is listed twice has all sides in
+  /// common with itself.
   bool lie_beside_each_other(const Elements& elements, const ImportedMesh& body) {
     const Mesh& mesh = body.mesh;
     const int count = nodes_of(mesh.shape);

@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <set>
 #include <vector>
 
 namespace stickslip {
@@ -132,14 +131,18 @@ std::optional<std::pair<int, int>> nodes_at_one_place(const Mesh& mesh, const Po
       }
   std::map<std::array<double, 3>, int> first_in;
   for (int n = 0; n < static_cast<int>(points.cols()); ++n) {
-    std::set<std::array<double, 3>> cells;  // the own one, and those beyond a border that is near
+    std::array<std::array<double, 3>, 2> ends{};  // cells of the node moved by `near` down and up, nearly always one
+    for (int i = 0; i < points.rows(); ++i)
+      for (int up : {0, 1}) ends[up][i] = std::floor((points(i, n) / least + (up ? near : -near)) / cell);
     for (int side = 0; side < 8; ++side) {
-      std::array<double, 3> at{};
-      for (int i = 0; i < points.rows(); ++i)
-        at[i] = std::floor((points(i, n) + (side >> i & 1 ? near : -near) * least) / (cell * least));
-      cells.insert(at);
-    }
-    for (const auto& at : cells) {
+      std::array<double, 3> at = ends[0];
+      bool is_first = true;  // of the sides with this cell
+      for (int i = 0; i < 3; ++i)
+        if (side >> i & 1) {
+          is_first &= ends[0][i] != ends[1][i];
+          at[i] = ends[1][i];
+        }
+      if (!is_first) continue;
       const auto [other, is_new] = first_in.try_emplace(at, n);
       if (!is_new && (points.col(other->second) - points.col(n)).norm() <= near * least)
         return std::pair(other->second, n);

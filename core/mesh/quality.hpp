@@ -27,7 +27,7 @@ struct ThinElement {
 /// the body, or of its distance from the origin.
 std::optional<ThinElement> first_thin_element(const Mesh&, const Points<double>&);
 
-/// Two nodes that are nearer to one another than a millionth of the shortest edge of the elements; none if there are none.
+/// Two nodes that are nearer to one another than a millionth of the shortest edge of the elements, if there are any.
 /// What a mesh generator computes twice differs by its rounding, 1e-11 and less; no mesh has edges as short as that.
 std::optional<std::pair<int, int>> nodes_at_one_place(const Mesh&, const Points<double>&);
 

@@ -46,8 +46,8 @@ class SolidSplitting {
     fine_.mesh.connectivity.insert(fine_.mesh.connectivity.end(), nodes.begin(), nodes.end());
   }
 
-  /// One tetrahedron at each corner, and four around the shortest diagonal of the octahedron between them: then splitting
-  /// again and again makes tetrahedra of a few shapes alone.
+  /// One tetrahedron at each corner, and four around the shortest diagonal of the octahedron between them: then
+  /// splitting again and again makes tetrahedra of a few shapes alone.
   void split_tetrahedron(std::array<int, 4> c) {
     for (int k = 0; k < 4; ++k) {
       std::vector<int> corner;

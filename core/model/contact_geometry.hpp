@@ -14,7 +14,8 @@ struct PlacedPoint {
   PointGeometry<T> geometry;
   /// Foot, as History::foot stores it. On an obstacle: in its frame, from the initial position of the slave node, and
   /// where ContactPoint::turns_frame the normal and the first tangent. On a curve: coordinate on the patch less
-  /// foot_reference(); where segment-integrated: mean initial arc length less origin_of_arcs(). What is not stored is 0.
+  /// foot_reference(); where segment-integrated: mean initial arc length less origin_of_arcs(). What is not stored is
+  /// 0.
   Feet<T, D> foot = Feet<T, D>::Constant(T(0));
   /// Motion of the foot relative to the master since the last increment, length. Slip is its tangential part.
   Vec<T, D> foot_motion = Vec<T, D>::Constant(T(0));

@@ -280,9 +280,9 @@ void place_contact_nodes(Model& model) {
     if (nodes.count(framed.node)) framed.place = model.place_of(framed.node);
 }
 
-/// Whether the elements of a body have a mean dilatation: if that is asked for; and, if nothing is asked for, those that
-/// would lock: quadrilaterals of four nodes and hexahedra of a body that flows, and hexahedra of one that hardly changes
-/// its volume.
+/// Whether the elements of a body have a mean dilatation: if that is asked for; and, if nothing is asked for, those
+/// that would lock: quadrilaterals of four nodes and hexahedra of a body that flows, and hexahedra of one that hardly
+/// changes its volume.
 bool averages(const Scene& scene, const Body& body, ElementShape shape) {
   if (has_mean_dilatation(body.element)) return true;
   if (!body.element.empty()) return false;

@@ -14,21 +14,22 @@
 
 namespace stickslip {
 
-/// A rotation's axis x arm; in the plane the axis is out of it.
+/// The axis of a rotation in space, of unit length.
 template <class T>
-Vector<T> across_axis(const Rotation& rotation, const Vector<T>& arm, const Numbers<T>& numbers) {
-  Vector<T> u(arm.size());
-  if (arm.size() == 2) {
-    u << -arm[1], arm[0];
-    return u;
-  }
+Vec<T, 3> unit_axis(const Rotation& rotation, const Numbers<T>& numbers) {
   Vec<T, 3> axis;
   for (int i = 0; i < 3; ++i) axis[i] = numbers(rotation.axis[i]);
   const T length = norm(axis);
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    u[i] = (axis[j] * arm[k] - axis[k] * arm[j]) / length;
-  }
+  for (int i = 0; i < 3; ++i) axis[i] /= length;
+  return axis;
+}
+
+/// A rotation's axis x arm; in the plane the axis is out of it.
+template <class T>
+Vector<T> across_axis(const Rotation& rotation, const Vector<T>& arm, const Numbers<T>& numbers) {
+  if (arm.size() == 3) return cross<T>(unit_axis(rotation, numbers), arm);
+  Vector<T> u(2);
+  u << -arm[1], arm[0];
   return u;
 }
 
@@ -52,10 +53,7 @@ struct Turn {
     using std::sin;
     const T angle = degrees * T(std::acos(-1.0) / 180), half = sin(angle / T(2));
     Turn turn{sin(angle), T(-2) * half * half};
-    if (rotation.axis.empty()) return turn;
-    for (int i = 0; i < 3; ++i) turn.axis[i] = numbers(rotation.axis[i]);
-    const T length = norm(turn.axis);
-    for (int i = 0; i < 3; ++i) turn.axis[i] /= length;
+    if (!rotation.axis.empty()) turn.axis = unit_axis(rotation, numbers);
     return turn;
   }
   Turn back() const { return {-sine, cosine_less_one, axis}; }
@@ -131,10 +129,7 @@ Matrix<T> nodal_frame(const Scene& scene, const FramedNode& framed, const Number
     const auto across = detail::tangent_frame<T>(Vector<T>(Q.col(0)));
     for (int k = 1; k < D; ++k) Q.col(k) = across.col(k - 1);
   } else if (known == 2 && D == 3) {
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      Q(i, 2) = Q(j, 0) * Q(k, 1) - Q(k, 0) * Q(j, 1);
-    }
+    Q.col(2) = cross<T>(Q.col(0), Q.col(1));
   }
   return Q;
 }

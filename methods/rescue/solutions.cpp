@@ -57,8 +57,8 @@ std::optional<Relation> relation(const ContactProblem& problem, double alpha, co
   return r;
 }
 
-/// Of the components of all points, without memory of its own on the heap: combinations are many. Each component doubles
-/// their number at least.
+/// Of the components of all points, without memory of its own on the heap: combinations are many. Each component
+/// doubles their number at least.
 constexpr int most_components = 12;
 static_assert(1L << most_components == most_combinations);
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_components, most_components>;

@@ -34,7 +34,8 @@ std::string counted(long count, const std::string& noun) {
 }
 
 std::string in_percent(double share) {
-  return share < 1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
+  constexpr double rounds_to_all = 0.995;
+  return share < rounds_to_all ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
 std::string listed(const std::vector<std::string>& names) {

@@ -19,8 +19,8 @@ class Costs {
  public:
   explicit Costs(const Measure& measure) : measure_(measure) {}
 
-  /// "work 6.1 (4 factorisations + 20 back-solves at 0.11 each, in 3 augmentations), 0.66 ms"; after the first, which so
-  /// says what work is, "work 6.1 (4 + 20), 0.66 ms".
+  /// "work 6.1 (4 factorisations + 20 back-solves at 0.11 each, in 3 augmentations), 0.66 ms"; after the first, which
+  /// so says what work is, "work 6.1 (4 + 20), 0.66 ms".
   std::string of(const Pick& pick) {
     const Cell& run = *pick.run;
     const Counts counts = counts_of(run, measure_.of);

@@ -13,8 +13,8 @@
 namespace stickslip {
 namespace {
 
-/// Share of a slave facet, or of the motion, up to which a gap is rounding. An overlap of it strains the elements by about
-/// as much, and a file with seven digits moves its nodes as far.
+/// Share of a slave facet, or of the motion, up to which a gap is rounding. An overlap of it strains the elements by
+/// about as much, and a file with seven digits moves its nodes as far.
 constexpr double rounding = 1e-6;
 
 void add(StartGaps& all, const StartGaps& more) {

@@ -124,8 +124,8 @@ void add_mechanisms(const CaseResult& result, std::vector<Warning>& warnings) {
   }
 }
 
-/// Natural places at which the change of volume of an element is looked at: of straight sides its corners; of curved ones
-/// a grid of 5 x 5.
+/// Natural places at which the change of volume of an element is looked at: of straight sides its corners; of curved
+/// ones a grid of 5 x 5.
 template <class Shape>
 std::vector<typename Shape::Point> places_of_volumes() {
   std::vector<typename Shape::Point> all;

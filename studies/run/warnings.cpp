@@ -85,10 +85,11 @@ void add_deformations(const CaseResult& result, std::vector<Warning>& warnings) 
                           fmt::format("{} is strained by no more than {:.2g}: it is some {:.2g} times as stiff as what "
                                       "presses on it",
                                       name, largest.strain, 1 / largest.strain)});
+    const double degrees = largest.rotation / degree;
     if (largest.rotation > most_rotation)
-      warnings.push_back({WarningCode::large_rotation, name, largest.rotation / degree, smaller,
-                          fmt::format("{} rotates by up to {:.2g} degrees; small strain holds below some 5", name,
-                                      largest.rotation / degree)});
+      warnings.push_back({WarningCode::large_rotation, name, degrees, smaller,
+                          fmt::format("{} rotates by up to {:.{}f} degrees; small strain holds below some 5", name,
+                                      degrees, degrees < 10 ? 1 : 0)});
   }
 }
 

@@ -272,13 +272,14 @@ json BudgetRunner::of(const CellInput& cell, const CaseResult& given) {
     if (!(scale > 0)) continue;  // nothing to be relative to
     const double noise = noise_of(quantity, scale);
     Budget budget;
+    BudgetPart step = limit_part(shared_.exact, shared_.steps, quantity, noise);
+    step.shared = referred && are_of_the_same_steps(study_.references);
     budget.parts = {{"rounding", mean_difference(own, loose_runs, quantity)},
                     {"iteration", mean_difference(loose_runs, tight_runs, quantity)},
                     {"enforcement", mean_difference(tight_runs, exact_runs, quantity)},
-                    {"step", limit_part(shared_.exact, shared_.steps, quantity, noise)},
+                    {"step", step},
                     {"mesh", limit_part(shared_.exact, shared_.mesh, quantity, noise)}};
     if (referred) budget.error = value;
-    budget.parts[3].second.shared = referred && are_of_the_same_steps(study_.references);
     budget.scale = scale;
     out["quantities"][quantity] = to_json(budget);
   }

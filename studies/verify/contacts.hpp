@@ -1,5 +1,5 @@
-/// The gap, normal and slip of the places of a contact: at nodes, or weighted over segments (core/README.md, A point that
-/// comes on, Segment integration).
+/// The gap, normal and slip of the places of a contact: at nodes, or weighted over segments (core/README.md, A point
+/// that comes on, Segment integration).
 ///
 ///   small strain:   g = g_0 + offset + n . w,   w = sum of weights u - u_obstacle,   slip = what w grew by, across n
 ///   finite strain:  slip = y(xi) - y(xi_last) on the master as it is now, across n; of an obstacle both in its frame
@@ -73,16 +73,16 @@ class Contact {
   double heat = 0;                     ///< of plastic slip since the start; NaN: not known
 
  private:
-  /// Part of a slave facet that sees one patch of the master (-1: an obstacle without patches) along its normal; whether
-  /// the two are opposite, or the patch looks its way.
+  /// Part of a slave facet that sees one patch of the master (-1: an obstacle without patches) along its normal;
+  /// whether the two are opposite, or the patch looks its way.
   struct Part {
     int patch;
     double from, to;
     bool is_opposite = true;
   };
 
-  /// Whether a contact is integrated over segments. At finite strain it is by default between sides of solid bodies, and
-  /// against a polyline, of no given surface.
+  /// Whether a contact is integrated over segments. At finite strain it is by default between sides of solid bodies,
+  /// and against a polyline, of no given surface.
   static bool is_integrated(const Scene& scene, const Json& given, const Json& sides) {
     if (given.contains("discretization")) return given["discretization"] == "segment";
     const std::string slave = sides.at("slave");
@@ -238,8 +238,8 @@ class Contact {
     return touch;
   }
 
-  /// What a place did since the last increment. Its gap and normal are those in the frame of the master, at small strain
-  /// those of the start.
+  /// What a place did since the last increment. Its gap and normal are those in the frame of the master, at small
+  /// strain those of the start.
   void move(Touch& touch, const Touch& last, const Field& u, double time) const {
     const Motion& motion = master_.motion;
     const bool on_curve = touch.place.patch >= 0 && last.place.patch >= 0;

@@ -1,6 +1,6 @@
-/// Foot of a point on the faces of a master in space, triangles and bilinear quadrilaterals, at small strain: the closest
-/// of all places, found inside of each face and on each of its edges. Where several faces have it, the normal is the mean
-/// of theirs, of those that oppose the slave's side (core/README.md, Faces in space).
+/// Foot of a point on the faces of a master in space, triangles and bilinear quadrilaterals, at small strain: the
+/// closest of all places, found inside of each face and on each of its edges. Where several faces have it, the normal
+/// is the mean of theirs, of those that oppose the slave's side (core/README.md, Faces in space).
 #pragma once
 
 #include "studies/verify/masters.hpp"

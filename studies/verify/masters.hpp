@@ -1,6 +1,6 @@
 /// Masters, and the foot of a point on them by the plainest search there is, every point against every facet
-/// (core/README.md, Notation, Along a curve, Finite strain, A side that touches itself). All in the frame of the master:
-/// of an obstacle the one that moves with it. At small strain what is faced, n and weights are of the start.
+/// (core/README.md, Notation, Along a curve, Finite strain, A side that touches itself). All in the frame of the
+/// master: of an obstacle the one that moves with it. At small strain what is faced, n and weights are of the start.
 ///
 ///   y(xi) = sum N_i(xi) y_i,   (x - y) . y' = 0,   n across y',   g = n . (x - y)      on facets and smooth patches
 ///   g = n . (x - p);   g = +- (|x - c| - r)                                            on a plane; a circle or sphere; a cylinder from its axis
@@ -196,8 +196,8 @@ class Master {
     }
   }
 
-  /// Lengths along the master, and numbers of its nodes: chain by chain, long ones first. A loop begins at the node that
-  /// is farthest from the mean of its nodes; of equals, at that with the least x, then y.
+  /// Lengths along the master, and numbers of its nodes: chain by chain, long ones first. A loop begins at the node
+  /// that is farthest from the mean of its nodes; of equals, at that with the least x, then y.
   void number_nodes() {
     std::vector<std::pair<double, Nodes>> chains;  // with their lengths
     for (int first = 0; first < std::ssize(patches); ++first) {
@@ -255,8 +255,8 @@ class Master {
     return !walls_.at(seeker.node).own[p] && against <= -0.5 * seeker.outward.norm() * line.tau.norm() && beside;
   }
 
-  /// The closest place of all patches, 0 <= xi <= 1; where two end in it, that on whose side of their bisector the point
-  /// is.
+  /// The closest place of all patches, 0 <= xi <= 1; where two end in it, that on whose side of their bisector the
+  /// point is.
   Place closest(const Seeker& seeker) const {
     Place best;
     double least = infinity, least_past = 0;  // distance; how far the point is past the end of the patch

@@ -181,8 +181,8 @@ struct Side {
   bool has(int node) const { return nodes.contains(node); }
 };
 
-/// An edge of a side in the plane, or half of one that has a middle: x(s) = (1 - s) x_a + s x_b, and of a half in addition
-/// s (1 - s) (x_middle - (x_start + x_end) / 2).
+/// An edge of a side in the plane, or half of one that has a middle: x(s) = (1 - s) x_a + s x_b, and of a half in
+/// addition s (1 - s) (x_middle - (x_start + x_end) / 2).
 struct Facet {
   std::array<int, 2> ends;
   Nodes edge = {};  ///< of a half: start, end, middle

@@ -1,4 +1,5 @@
-/// Laws of materials, elements, bodies and loads, without tangents, which a check does not need (core/README.md, Elements, Shares).
+/// Laws of materials, elements, bodies and loads, without tangents, which a check does not need (core/README.md,
+/// Elements, Shares).
 ///
 ///   f_a = int P grad N_a dV,   of revolution + e_r int P_33 N_a / R dV,   H = sum u_a (x) grad N_a,  H_33 = u_r / R
 ///   mean dilatation: F -> (theta / J)^(1/3) F, theta the mean of J; small: H -> H + (theta - tr H) / 3 I  [H80, MOS90]
@@ -134,7 +135,8 @@ inline Answer respond_along(const Material& material, const Vec3& axis, const Ma
 
 // --- elements --------------------------------------------------------------------------------------------------------
 
-/// Shape functions N at a place: the polynomials that are 1 at their node and 0 at the others; their gradients by r, s, t.
+/// Shape functions N at a place: the polynomials that are 1 at their node and 0 at the others; their gradients by r, s,
+/// t.
 struct Shape {
   Vec3 at;
   Eigen::VectorXd value;
@@ -307,8 +309,8 @@ struct Bodies {
 
 // --- loads -----------------------------------------------------------------------------------------------------------
 
-/// Integrates over a side, of edges or faces at `places`: adds up, at each of its nodes, a weight times N, and the vector
-/// area out of the body that it stands for; of an edge, at a place of it.
+/// Integrates over a side, of edges or faces at `places`: adds up, at each of its nodes, a weight times N, and the
+/// vector area out of the body that it stands for; of an edge, at a place of it.
 template <class F>
 void over_side(const Scene& scene, const Body& body, const Side& side, const Field& places, F&& add) {
   for (const auto& edge : side.edges) {

@@ -133,7 +133,7 @@ class Result:
         for objective in objectives.values():
             for key in ("gradient", "one_sided"):
                 if key in objective:
-                    objective[key] = {name: objective[key][name] for name in self.parameters}
+                    objective[key] = {name: objective[key][name] for name in self.parameters if name in objective[key]}
         return objectives
 
     def gradient(self, objective: str) -> np.ndarray:

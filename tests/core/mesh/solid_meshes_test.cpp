@@ -1,5 +1,5 @@
-/// Meshes of space: boxes and extruded meshes of hexahedra and of tetrahedra fill their volume, have no inverted element,
-/// fit together, and have sides that face outward.
+/// Meshes of space: boxes and extruded meshes of hexahedra and of tetrahedra fill their volume, have no inverted
+/// element, fit together, and have sides that face outward.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -19,8 +19,8 @@ ImportedMesh imported_box(const BoxMesh& box, const std::string& element) {
   return {"", "box", mesh, with_middles(mesh, make_points<double>(box, {}, 2))};
 }
 
-/// A sector of a ring of an element, as an imported mesh. Its sides are curved where elements are quadratic: their middles
-/// are moved onto the circles.
+/// A sector of a ring of an element, as an imported mesh. Its sides are curved where elements are quadratic: their
+/// middles are moved onto the circles.
 ImportedMesh sector(const std::string& element) {
   BoxMesh box;
   box.min = {1.0, 0.0};
@@ -34,8 +34,8 @@ ImportedMesh sector(const std::string& element) {
   return imported;
 }
 
-/// Area by the shape functions, exact for elements of the second order: the boundary integral of x dy over the edges, each
-/// a parabola, of all sides of the body.
+/// Area by the shape functions, exact for elements of the second order: the boundary integral of x dy over the edges,
+/// each a parabola, of all sides of the body.
 double area(const ImportedMesh& body) {
   double sum = 0;
   for (const auto& [name, side] : body.mesh.sides)
@@ -85,8 +85,8 @@ TEST(Split, KeepsTheRegionAndItsNodesAndHalvesEveryEdge) {
   }
 }
 
-/// The new nodes of quadratic elements lie where the shape functions of the old ones put them: a field of the second order
-/// in the parameters is met, so a mesh whose nodes are on a map of the second order stays on it.
+/// The new nodes of quadratic elements lie where the shape functions of the old ones put them: a field of the second
+/// order in the parameters is met, so a mesh whose nodes are on a map of the second order stays on it.
 TEST(Split, OfQuadraticElementsFollowsAMapOfTheSecondOrder) {
   const auto map = [](double x, double y) { return Vec<double, 2>(x + 0.1 * y * y - 0.05 * x * y, y + 0.07 * x * x); };
   for (const auto* element : {"T6", "Q8"}) {
