@@ -55,10 +55,11 @@ class ChangeReader {
   }
 
   void read_vertices() {
-    for_each_vertex_way(model_, of_.block.slots, of_.at.displacement, of_.state, of_.time,
-                        [&](const Direction& way, double length) {
-                          lower(way, std::abs(way.v) <= weak_margin, scales_.negligible(scales_.of_mesh / length));
-                        });
+    const auto read = [&](const Direction& way, double length) {
+      lower(way, std::abs(way.v) <= weak_margin, scales_.negligible(scales_.of_mesh / length));
+    };
+    const auto for_each_way = model_.dimension == 3 ? for_each_edge_way : for_each_vertex_way;
+    for_each_way(model_, of_.block.slots, of_.at.displacement, of_.state, of_.time, read);
   }
 
  private:

@@ -7,6 +7,7 @@
 
 #include "core/model/loading.hpp"
 #include "core/model/positions.hpp"
+#include "sensitivity/ties/edge_tie.hpp"
 #include "sensitivity/ties/scales.hpp"
 
 namespace stickslip {
@@ -76,7 +77,7 @@ bool has_kink_at(const MasterCurve& curve, int node, At&& present, OfStart&& of_
 template <class F>
 void for_each_way(const Model& model, const Slots<double>& slots, const State<double>& at, const State<double>& reached,
                   double time, double turn, F&& f) {
-  if (!slides_along_facets(model)) return;
+  if (model.dimension == 3 || !slides_along_facets(model)) return;
   const Vector<double> compact = to_compact(model, at.displacement);
   const auto positions = detail::positions_at(model, slots, compact, time);
   for (std::size_t p = 0; p < model.points.size(); ++p) {
@@ -129,13 +130,15 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
 
 bool slides_along_facets(const Model& model) {
   const auto has_facets = [](const MasterCurve& curve) {
-    return std::any_of(curve.patches.begin(), curve.patches.end(), is_facet);
+    const auto is_face = [](const SurfacePatch& patch) { return patch.control.size() == 0; };
+    return std::any_of(curve.patches.begin(), curve.patches.end(), is_facet) ||
+           std::any_of(curve.surface.begin(), curve.surface.end(), is_face);
   };
   return model.slides_along_curves() && std::any_of(model.curves.begin(), model.curves.end(), has_facets);
 }
 
 double vertex_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time) {
-  double least = integration_margin(model, slots, state, time);
+  double least = std::min(integration_margin(model, slots, state, time), edge_margin(model, state));
   for_each_way(model, slots, state, state, time, 0, [&](int, double way) { least = std::min(least, way); });
   return least;
 }

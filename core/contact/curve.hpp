@@ -92,6 +92,7 @@ struct Facing {
   /// Segment-integrated contact: the segments. `patch` is then the origin of arc lengths along the curve.
   std::vector<Segment> pieces = {};
   std::vector<int> nodes = {};  ///< of the slave facets and of these segments, in the order of the weights
+  double eta = 0;               ///< in space: the second coordinate of the foot
   friend bool operator==(const Facing&, const Facing&) = default;
 };
 

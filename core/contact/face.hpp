@@ -98,11 +98,13 @@ FacePosition<T> face_position(const std::array<Vec<T, 3>, 4>& corner, const Face
 Mat<double, 2> foot_step(const FacePlace& place, const Vec<double, 3>& off, const Vec<double, 3>& along_s,
                          const Vec<double, 3>& along_t, const Vec<double, 3>& twist);
 
-/// Foot of a point on a face: its coordinates, its weights, and the normal of the face there.
+/// Foot of a point on a face: its position and the slopes there, its coordinates (s, t), its weights, and the normal of
+/// the face.
 template <class T>
-struct FaceFoot {
+struct FaceFoot : FacePosition<T> {
+  Vec<T, 2> at;
   std::array<T, 4> weights;
-  Vec<T, 3> position, normal;  ///< normal: unit, out of the solid
+  Vec<T, 3> normal;  ///< unit, out of the solid
 };
 
 /// The foot of x at a place that was found in double, with its derivatives. `corner`: positions of the corners.
@@ -122,7 +124,7 @@ FaceFoot<T> face_foot(const FacePlace& place, const Vec<T, 3>& x, const std::arr
   }
   const auto weights = face_weights<T>(place.corners, s, t);
   const auto at = face_position(corner, weights);
-  FaceFoot<T> foot{weights.value, at.y, cross(at.along_s, at.along_t)};
+  FaceFoot<T> foot{at, {s, t}, weights.value, cross(at.along_s, at.along_t)};
   const T area = norm(foot.normal);
   for (int i = 0; i < 3; ++i) foot.normal[i] /= area;
   return foot;

@@ -18,29 +18,54 @@ bool precedes(const NearestPlace& a, const NearestPlace& b) {
   return std::lexicographical_compare(a.position.begin(), a.position.end(), b.position.begin(), b.position.end());
 }
 
-}  // namespace
+/// Normal of a face by its diagonals, twice its area long.
+Vec<double, 3> diagonals(const std::array<Vec<double, 3>, 4>& corner, int corners) {
+  return cross<double>(corner[2] - corner[0], corner[corners - 1] - corner[1]);
+}
 
-FaceSearch::FaceSearch(const Points<double>& points, const std::vector<std::vector<int>>& faces) : points_(points) {
-  std::map<std::pair<int, int>, int> count;  // of faces at an edge
-  for (const auto& nodes : faces) {
-    FacePlace face;
+std::vector<FacePlace> faces_of(const std::vector<std::vector<int>>& all) {
+  std::vector<FacePlace> faces;
+  for (const auto& nodes : all) {
+    auto& face = faces.emplace_back();
     face.corners = static_cast<int>(nodes.size());
     std::copy(nodes.begin(), nodes.end(), face.nodes.begin());
-    faces_.push_back(face);
-    for (std::size_t k = 0; k < nodes.size(); ++k) ++count[std::minmax(nodes[k], nodes[(k + 1) % nodes.size()])];
   }
+  return faces;
+}
+
+std::vector<std::array<char, 4>> borders_of(const std::vector<std::vector<int>>& faces) {
+  std::map<std::pair<int, int>, int> count;  // of faces at an edge
+  const auto edge = [](const std::vector<int>& nodes, std::size_t k) -> std::pair<int, int> {
+    return std::minmax(nodes[k], nodes[(k + 1) % nodes.size()]);
+  };
+  for (const auto& nodes : faces)
+    for (std::size_t k = 0; k < nodes.size(); ++k) ++count[edge(nodes, k)];
+  std::vector<std::array<char, 4>> borders;
+  for (const auto& nodes : faces) {
+    auto& border = borders.emplace_back();
+    for (std::size_t k = 0; k < nodes.size(); ++k) border[k] = count[edge(nodes, k)] == 1;
+  }
+  return borders;
+}
+
+}  // namespace
+
+FaceSearch::FaceSearch(const Points<double>& points, const std::vector<std::vector<int>>& faces)
+    : FaceSearch(points, faces_of(faces), borders_of(faces)) {}
+
+FaceSearch::FaceSearch(const Points<double>& points, std::vector<FacePlace> faces,
+                       std::vector<std::array<char, 4>> border)
+    : points_(points), faces_(std::move(faces)), border_(std::move(border)) {
   std::vector<int> numbers;
-  for (const auto& face : faces_) {
-    auto& border = border_.emplace_back();
-    for (int k = 0; k < face.corners; ++k)
-      border[k] = count[std::minmax(face.nodes[k], face.nodes[(k + 1) % face.corners])] == 1;
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const auto& face = faces_[f];
     const auto corner = corners(face);
     bool is_finite = true;
     for (int k = 0; k < face.corners; ++k) {
       is_finite &= corner[k].allFinite();
       band_ = std::max(band_, at_face_edge * (corner[(k + 1) % face.corners] - corner[k]).norm());
     }
-    if (is_finite) numbers.push_back(static_cast<int>(border_.size()) - 1);
+    if (is_finite) numbers.push_back(static_cast<int>(f));
   }
   boxes_ = BoxTree<3>(std::move(numbers), [this](int f) {
     const auto corner = corners(faces_[f]);
@@ -54,18 +79,25 @@ std::array<Vec<double, 3>, 4> FaceSearch::corners(const FacePlace& face) const {
   return corners_of<double>(face, [this](int node) -> Vec<double, 3> { return points_.col(node); });
 }
 
-std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x) const {
+std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const {
   std::vector<Near> near;  // as near as the nearest so far, and ties
   double least = std::numeric_limits<double>::infinity();
   const auto skips = [&](const Bounds<3>& box) { return box.distance(x) > least + band_; };
   boxes_.visit(x, skips, [&](int f) {
-    near.push_back({nearest_of_face(faces_[f], corners(faces_[f]), x), f});
+    const auto corner = corners(faces_[f]);
+    if (outward != Vec<double, 3>::Zero() && diagonals(corner, faces_[f].corners).dot(outward) >= 0) return;
+    near.push_back({nearest_of_face(faces_[f], corner, x), f});
     least = std::min(least, near.back().distance);
   });
   std::erase_if(near, [&](const Near& at) { return at.distance > least + band_; });
-  if (near.empty()) return {};
+  if (near.empty()) return near;
   const NearestPlace best = *std::min_element(near.begin(), near.end(), precedes);
   std::erase_if(near, [&](const Near& at) { return (at.position - best.position).norm() > 2 * band_; });
+  return near;
+}
+
+std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x) const {
+  const auto near = nearest(x, Vec<double, 3>::Zero());
   if (is_past_border(near, x)) return {};
   std::vector<FacePlace> places;
   for (const auto& at : near) places.push_back(at.place);

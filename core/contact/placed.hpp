@@ -1,4 +1,4 @@
-/// A point of the plane that moves.
+/// A point that moves.
 #pragma once
 
 #include "core/algebra/scalar.hpp"
@@ -11,15 +11,16 @@ namespace stickslip {
 ///
 ///   T  scalar of the initial position
 ///   U  scalar of the displacement, built on T
-template <class U, class T = U>
+template <class U, class T = U, int D = 2>
 struct Placed {
-  Vec<T, 2> start;
-  Vec<U, 2> moved;
+  Vec<T, D> start;
+  Vec<U, D> moved;
 
   /// The vector from another point to this one.
-  friend Vec<U, 2> operator-(const Placed& a, const Placed& b) {
-    return {U(a.start[0] - b.start[0]) + (a.moved[0] - b.moved[0]),
-            U(a.start[1] - b.start[1]) + (a.moved[1] - b.moved[1])};
+  friend Vec<U, D> operator-(const Placed& a, const Placed& b) {
+    Vec<U, D> way;
+    for (int i = 0; i < D; ++i) way[i] = U(a.start[i] - b.start[i]) + (a.moved[i] - b.moved[i]);
+    return way;
   }
 };
 

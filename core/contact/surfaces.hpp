@@ -87,7 +87,7 @@ PointGeometry<T> against_faces(const Vec<T, 3>& x, const std::vector<FacePlace>&
   for (const auto& face : faces) {
     const auto at = face_foot<T>(face, x, corners_of<T>(face, position));
     normal += at.normal;
-    foot += at.position * share;
+    foot += at.y * share;
     for (int k = 0; k < face.corners; ++k)
       g.weights[std::find(nodes.begin(), nodes.end(), face.nodes[k]) - nodes.begin()] -= share * at.weights[k];
   }

@@ -14,8 +14,8 @@ struct PlacedPoint {
   PointGeometry<T> geometry;
   /// Foot, as History::foot stores it. On an obstacle: in its frame, from the initial position of the slave node, and
   /// where ContactPoint::turns_frame the normal and the first tangent. On a curve: coordinate on the patch less
-  /// foot_reference(); where segment-integrated: mean initial arc length less origin_of_arcs(). What is not stored is
-  /// 0.
+  /// foot_reference(), on a surface the first two, and the first tangent in terms of the slopes y_s and y_t there; where
+  /// segment-integrated: mean initial arc length less origin_of_arcs(). What is not stored is 0.
   Feet<T, D> foot = Feet<T, D>::Constant(T(0));
   /// Motion of the foot relative to the master since the last increment, length. Slip is its tangential part.
   Vec<T, D> foot_motion = Vec<T, D>::Constant(T(0));
@@ -75,14 +75,9 @@ void turn_with(const Frame<T, D>& frame, PlacedPoint<U, D>& at) {
 ///
 ///   e - (e . n) / (1 + n_0 . n) (n_0 + n)
 ///
-/// So components of tractions and slips keep their directions on the surface. `last`: n_0 and the first tangent.
-template <class U, class T>
-auto carried_tangents(const T* last, const Vec<U, 3>& normal) {
-  Vec<U, 3> before, first;
-  for (int i = 0; i < 3; ++i) {
-    before[i] = U(last[i]);
-    first[i] = U(last[3 + i]);
-  }
+/// So components of tractions and slips keep their directions on the surface. `before`: n_0; `first`: the first tangent.
+template <class U>
+auto carried_tangents(const Vec<U, 3>& before, Vec<U, 3> first, const Vec<U, 3>& normal) {
   first -= Vec<U, 3>(before + normal) * (dot(first, normal) / (U(1) + dot(before, normal)));
   decltype(PointGeometry<U>::tangents) tangents(3, 2);
   tangents << first, cross<U>(normal, first);
@@ -109,7 +104,12 @@ PlacedPoint<U, D> on_obstacle(const Positions<U, T, Displacement>& positions, co
   }
   if constexpr (D == 3)
     if (point.turns_frame) {
-      if (earlier.foot) at.geometry.tangents = carried_tangents<U>(earlier.foot + D, Vec<U, 3>(at.geometry.normal));
+      if (earlier.foot) {
+        const auto last = [&](int k) -> Vec<U, 3> {
+          return {U(earlier.foot[k]), U(earlier.foot[k + 1]), U(earlier.foot[k + 2])};
+        };
+        at.geometry.tangents = carried_tangents<U>(last(D), last(2 * D), at.geometry.normal);
+      }
       at.foot.template segment<D>(D) = at.geometry.normal;
       at.foot.template segment<D>(2 * D) = at.geometry.tangents.col(0);
     }
@@ -192,26 +192,119 @@ U place_beside(const Positions<U, T, Displacement>& positions, const ContactPoin
   return place;
 }
 
+/// Place on a surface from which its feet on a patch are measured: that of its foot at the start, if the patch has it;
+/// so a small motion makes a small difference, also across an edge.
+inline Vec<double, 2> surface_reference(const ContactPoint& point, int patch) {
+  for (const Facing& start : point.starts)
+    if (start.patch == patch) return {start.xi, start.eta};
+  return Vec<double, 2>::Zero();
+}
+
+/// Whether a patch of a surface has the place of the start of a point.
+inline bool has_start(const ContactPoint& point, int patch) {
+  return std::any_of(point.starts.begin(), point.starts.end(), [&](const Facing& at) { return at.patch == patch; });
+}
+
+/// Stores the foot of a point on a surface: the way to it, and the first tangent in terms of the slopes.
+template <class U>
+void keep_foot(const SurfacePlace<U>& place, const Vec<double, 2>& reference, const PatchAround<U>& around,
+               PlacedPoint<U, 3>& at) {
+  at.foot.template head<2>() = place.from(reference);
+  const Vec<U, 3> first = at.geometry.tangents.col(0);
+  const U ss = dot(around.along_s, around.along_s), st = dot(around.along_s, around.along_t),
+          tt = dot(around.along_t, around.along_t), s = dot(first, around.along_s), t = dot(first, around.along_t);
+  const U determinant = ss * tt - st * st;
+  at.foot[2] = (tt * s - st * t) / determinant;
+  at.foot[3] = (ss * t - st * s) / determinant;
+}
+
+/// Place of a patch, as History::foot stores it.
+template <class U, class T>
+SurfacePlace<U> stored_place(const MasterCurve& surface, const ContactPoint& point, int patch, const T* foot) {
+  return SurfacePlace<U>::behind(surface.surface[patch], surface_reference(point, patch), {U(foot[0]), U(foot[1])});
+}
+
+/// The same as place_beside() on a surface: sets the foot of a point to the place of the facet `nearest` that is
+/// nearest to the slave node.
+template <class U, class T, class Displacement>
+void set_place_beside(const Positions<U, T, Displacement>& positions, const ContactPoint& point, int nearest,
+                      PlacedPoint<U, 3>& at) {
+  const auto& surface = positions.model.curves[point.curve];
+  const auto& patch = surface.surface[nearest];
+  FacePlace face;
+  face.corners = patch.corners;
+  std::copy_n(patch.vertices.begin(), patch.corners, face.nodes.begin());
+  const Placed<U, T, 3> x = positions.template slave<3>(point);
+  const auto corner = corners_of<U>(face, [&](int v) -> Vec<U, 3> {  // (from x, so that nothing is far away)
+    return positions.template vertex<3>(surface, v) - x;
+  });
+  std::array<Vec<double, 3>, 4> in_double;
+  for (int k = 0; k < 4; ++k) in_double[k] = values(corner[k]);
+  const auto found = nearest_of_face(face, in_double, Vec<double, 3>::Zero());
+  const auto foot = face_foot<U>(found.place, Vec<U, 3>::Constant(U(0)), corner);
+  SurfacePlace<U> place{&patch, found.place.at};
+  for (int i = 0; i < 2; ++i) place.rest[i] = foot.at[i] - U(place.at[i]);
+  at.geometry.tangents = tangent_frame<U>(foot.normal);
+  keep_foot(place, surface_reference(point, nearest), {foot.y, foot.along_s, foot.along_t}, at);
+}
+
+/// Geometry of a point against its surface in space.
+template <class U, class T, class Displacement>
+PlacedPoint<U, 3> on_surface(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
+                             const Facing& facing, const Earlier<T>& earlier) {
+  const Model& model = positions.model;
+  const auto& surface = model.curves[point.curve];
+  const auto vertex = [&](int v) { return positions.template vertex<3>(surface, v); };
+  const Vec<double, 2> reference = surface_reference(point, facing.patch);
+  PlacedPoint<U, 3> at;
+  const auto foot = foot_on_patch<U, T>(surface.surface[facing.patch], reference, {facing.xi, facing.eta},
+                                        positions.template slave<3>(point), vertex);
+  at.geometry.gap = foot.gap + U(offset_of(point, model, positions.slots));
+  at.geometry.normal = foot.normal;
+  at.geometry.weights.resize(1 + foot.weights.size());
+  at.geometry.weights << U(1), -foot.weights;
+  at.geometry.area = U(earlier.start ? earlier.start->area : whole_area(point, positions.slots));
+  at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
+  if (point.foot < 0) return at;
+  if (earlier.patch != Patch::none) {
+    const auto last = stored_place<U>(surface, point, earlier.patch, earlier.foot);
+    const bool joined = has_start(point, facing.patch) && has_start(point, earlier.patch);
+    at.foot_motion =
+        surface_motion<U, T>(last, surface_reference(point, earlier.patch), foot.place, reference, joined, vertex);
+    const auto around = around_place<U, T>(last, vertex);
+    const Vec<U, 3> across = around.cross();
+    Vec<U, 3> first = U(earlier.foot[2]) * around.along_s + U(earlier.foot[3]) * around.along_t;
+    first /= norm(first);
+    at.geometry.tangents = carried_tangents<U>(across / norm(across), first, foot.normal);
+  }
+  keep_foot(foot.place, reference, foot.around, at);
+  return at;
+}
+
 /// Geometry of a point that faces nothing of its curve: it transmits no force. The gap is the distance, the normal that
 /// of the start, and if it faced nothing then either, opposite to the normal of its own side. The foot is its placement
 /// beside the curve.
-template <class U, class T, class Displacement>
-PlacedPoint<U, 2> off_curve(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
+template <int D, class U, class T, class Displacement>
+PlacedPoint<U, D> off_curve(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
                             const Facing& facing, const Earlier<T>& earlier) {
-  decltype(PointGeometry<U>::normal) normal(2);
-  normal << U(0), U(1);
+  decltype(PointGeometry<U>::normal) normal(D);
+  for (int i = 0; i < D; ++i) normal[i] = U(i == 1 ? 1.0 : 0.0);
   if (earlier.start) {
-    normal << U(earlier.start->normal[0]), U(earlier.start->normal[1]);
+    for (int i = 0; i < D; ++i) normal[i] = U(earlier.start->normal[i]);
   } else if (!point.area_facets.empty()) {
-    const Vec<T, 2> outward = slave_normal<2>(point.area_facets, positions.slots.points);
+    const Vec<T, D> outward = slave_normal<D>(point.area_facets, positions.slots.points);
     const T length = norm(outward);
-    normal << U(-outward[0] / length), U(-outward[1] / length);
+    for (int i = 0; i < D; ++i) normal[i] = U(-outward[i] / length);
   }
-  PlacedPoint<U, 2> at;
+  PlacedPoint<U, D> at;
   at.faces_master = false;
   at.geometry = alone<U>(U(facing.distance), normal, point.slave_nodes);
   at.geometry.area = U(earlier.start ? earlier.start->area : whole_area(point, positions.slots));
-  if (point.foot >= 0 && facing.nearest != Patch::none) at.foot[0] = place_beside(positions, point, facing.nearest);
+  if (point.foot < 0 || facing.nearest == Patch::none) return at;
+  if constexpr (D == 2)
+    at.foot[0] = place_beside(positions, point, facing.nearest);
+  else
+    set_place_beside(positions, point, facing.nearest, at);
   return at;
 }
 
@@ -301,8 +394,10 @@ PlacedPoint<U, 2> on_segments(const Positions<U, T, Displacement>& positions, co
 template <int D, class U, class T, class Displacement>
 PlacedPoint<U, D> place_point(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
                               const Facing& facing, const Earlier<T>& earlier = {}) {
-  if constexpr (D == 2) {
-    if (point.curve >= 0 && facing.patch == Patch::none) return off_curve(positions, point, facing, earlier);
+  if (point.curve >= 0 && facing.patch == Patch::none) return off_curve<D>(positions, point, facing, earlier);
+  if constexpr (D == 3) {
+    if (point.curve >= 0) return on_surface(positions, point, facing, earlier);
+  } else {
     if (!point.segments.empty()) return on_segments(positions, point, facing, earlier);
     if (point.curve >= 0) return on_curve(positions, point, facing, earlier);
   }

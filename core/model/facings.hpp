@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/contact/curve_search.hpp"
+#include "core/contact/surface_search.hpp"
 #include "core/model/contact_geometry.hpp"
 #include "core/model/segment_search.hpp"
 #include "core/model/state.hpp"
@@ -24,7 +25,10 @@ struct ContactInput {
   const std::vector<Facing>* facing = nullptr;  ///< per point, on its curve; nullptr: search for it
 
   /// Positions at compact displacements, which must outlive them.
-  auto positions(const Vector<T>& compact) const { return detail::positions_at(model, slots, compact, time); }
+  template <int D = 2>
+  auto positions(const Vector<T>& compact) const {
+    return detail::positions_at<D>(model, slots, compact, time);
+  }
 };
 
 namespace detail {
@@ -35,47 +39,60 @@ int last_faced(const ContactInput<T>& input, int p) {
   return input.previous.faces[p] ? input.previous.patch[p] : Patch::none;
 }
 
-/// A curve where displacements have moved it, and the search along it. Places are from the first vertex at the start,
-/// so that what lies far from the origin is found as near it. Not to be copied.
-template <class T>
+inline CurveSearch search_of(const MasterCurve& curve, const Eigen::Matrix2Xd& places) {
+  return {curve.patches, places};
+}
+inline SurfaceSearch search_of(const MasterCurve& curve, const Points<double>& places) {
+  return {curve.surface, places};
+}
+
+/// A curve, in space a surface, where displacements have moved it, and the search along it. Places are from the first
+/// vertex at the start, so that what lies far from the origin is found as near it. Not to be copied.
+template <class T, int D>
 struct MovedCurve {
+  using Place = Vec<double, D>;
+  using Places = std::conditional_t<D == 2, Eigen::Matrix2Xd, Points<double>>;
   const ContactInput<T>& input;
   const Vector<T>& compact;  ///< displacements of the contact nodes
-  Vec<double, 2> origin;
-  Eigen::Matrix2Xd places;  ///< of the vertices
-  CurveSearch search;
+  Place origin;
+  Places places;  ///< of the vertices
+  std::conditional_t<D == 2, CurveSearch, SurfaceSearch> search;
 
   /// All arguments must outlive this.
   MovedCurve(const ContactInput<T>& input, const MasterCurve& curve, const Vector<T>& compact)
       : input(input),
         compact(compact),
-        origin(values(input.positions(compact).vertex(curve, 0).start)),
+        origin(values(positions().template vertex<D>(curve, 0).start)),
         places(places_of(curve)),
-        search(curve.patches, places) {}
+        search(search_of(curve, places)) {}
   MovedCurve(const MovedCurve&) = delete;
 
   /// Place of the slave node of a point.
-  Vec<double, 2> slave(const ContactPoint& point) const { return place(input.positions(compact).slave(point)); }
-  /// Outward normal of the slave side at a point, by the lengths of its facets; zero where it has none.
-  Vec<double, 2> outward(const ContactPoint& point) const {
-    const auto displacement = nodal_displacement(compact);
-    const auto node = [&](int number, int at) {
-      return place(Placed<T>{point2(input.slots.points, number), displacement(at)});
-    };
-    Vec<double, 2> normal = Vec<double, 2>::Zero();
+  Place slave(const ContactPoint& point) const { return place(positions().template slave<D>(point)); }
+  /// Outward normal of the slave side at a point, by the sizes of its facets; zero where it has none.
+  Place outward(const ContactPoint& point) const {
+    const auto displacement = nodal_displacement<D>(compact);
+    Place normal = Place::Zero();
     for (std::size_t f = 0; f < point.facet_places.size(); ++f) {
-      const auto &facet = point.area_facets[f], &places = point.facet_places[f];
-      const Vec<double, 2> along = node(facet[1], places[1]) - node(facet[0], places[0]);
-      normal += Vec<double, 2>(along[1], -along[0]);
+      const auto &facet = point.area_facets[f], &at = point.facet_places[f];
+      Points<double> corners(D, static_cast<Eigen::Index>(facet.size()));
+      std::vector<int> order;
+      for (std::size_t k = 0; k < facet.size(); ++k) {
+        const Vec<T, D> X = input.slots.points.template block<D, 1>(0, facet[k]);
+        corners.col(static_cast<Eigen::Index>(k)) = place({X, displacement(at[k])});
+        order.push_back(static_cast<int>(k));
+      }
+      normal += slave_normal<D>({order}, corners);
     }
     return normal;
   }
 
  private:
-  Vec<double, 2> place(const Placed<T>& at) const { return values(at.start) - origin + values(at.moved); }
-  Eigen::Matrix2Xd places_of(const MasterCurve& curve) const {
-    Eigen::Matrix2Xd at(2, curve.vertex_count);
-    for (int v = 0; v < curve.vertex_count; ++v) at.col(v) = place(input.positions(compact).vertex(curve, v));
+  auto positions() const { return input.template positions<D>(compact); }
+  Place place(const Placed<T, T, D>& at) const { return values(at.start) - origin + values(at.moved); }
+  Places places_of(const MasterCurve& curve) const {
+    Places at(D, curve.vertex_count);
+    for (int v = 0; v < curve.vertex_count; ++v) at.col(v) = place(positions().template vertex<D>(curve, v));
     return at;
   }
 };
@@ -103,6 +120,29 @@ void find_moved_segments(const ContactInput<T>& input, int curve, const Vector<T
   find_segments(model, curve, start, moved, last, found);
 }
 
+/// Sets what the points of a curve face; the arguments are those of facings().
+template <class T, int D>
+void find_along_curve(const ContactInput<T>& input, int curve, const Vector<T>& compact, const std::vector<int>& kept,
+                      std::vector<Facing>& found) {
+  const Model& model = input.model;
+  const MovedCurve<T, D> now(input, model.curves[curve], compact);
+  for (int p = 0; p < static_cast<int>(found.size()); ++p) {
+    const auto& point = model.points[p];
+    if (point.curve != curve) continue;
+    const Vec<double, D> x = now.slave(point);
+    if (!kept.empty() && kept[p] != Patch::none) {
+      found[p] = now.search.foot_on(kept[p], x);
+      continue;
+    }
+    if constexpr (D == 2)
+      if (point.own.vertex != Patch::none) {
+        found[p] = now.search.facing_itself(x, now.outward(point), point.own, last_faced(input, p));
+        continue;
+      }
+    found[p] = now.search.facing(x, now.outward(point));
+  }
+}
+
 /// What each contact point faces of its curve. `compact`: displacements of the contact nodes; `kept`: per point, the
 /// patch on which its foot is to be found, or Patch::none to search the curve; empty: search for all points.
 template <class T>
@@ -110,22 +150,10 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
   const Model& model = input.model;
   std::vector<Facing> found(model.points.size());
   for (int c = 0; c < static_cast<int>(model.curves.size()); ++c) {
-    if (model.curves[c].is_integrated()) {
+    if (model.curves[c].is_integrated())
       find_moved_segments(input, c, compact, found);
-      continue;
-    }
-    const MovedCurve<T> now(input, model.curves[c], compact);
-    for (int p = 0; p < static_cast<int>(found.size()); ++p) {
-      const auto& point = model.points[p];
-      if (point.curve != c) continue;
-      const Vec<double, 2> x = now.slave(point);
-      if (!kept.empty() && kept[p] != Patch::none)
-        found[p] = now.search.foot_on(kept[p], x);
-      else if (point.own.vertex == Patch::none)
-        found[p] = now.search.facing(x, now.outward(point));
-      else
-        found[p] = now.search.facing_itself(x, now.outward(point), point.own, last_faced(input, p));
-    }
+    else
+      with_dimension(model.dimension, [&]<int D>() { find_along_curve<T, D>(input, c, compact, kept, found); });
   }
   return found;
 }
@@ -134,7 +162,7 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
 /// they slide if they come onto one. An equilibrium needs it, and no iterate on the way: the search looks far.
 template <class T>
 void place_open_vertices(const ContactInput<T>& input, const Vector<T>& compact, ContactField<T>& field) {
-  std::optional<MovedCurve<T>> now;
+  std::optional<MovedCurve<T, 2>> now;
   for (int p = 0, of = -1; p < static_cast<int>(field.facing.size()); ++p) {
     const auto& point = input.model.points[p];
     auto& facing = field.facing[p];

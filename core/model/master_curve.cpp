@@ -81,6 +81,17 @@ void set_own_vertices(const Eigen::Matrix2Xd& places, MasterCurve& curve) {
   }
 }
 
+/// Numbers the nodes of facets as vertices of a curve, in the order in which they come.
+void number_vertices(std::vector<std::vector<int>>& facets, MasterCurve& curve) {
+  std::map<int, int> number;
+  for (auto& facet : facets)
+    for (int& node : facet) {
+      const auto [found, is_new] = number.emplace(node, static_cast<int>(number.size()));
+      if (is_new) curve.nodes.push_back(node);
+      node = found->second;
+    }
+}
+
 }  // namespace
 
 QuadraticEdges::QuadraticEdges(const SideSet& side) {
@@ -122,13 +133,7 @@ std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Po
     if (contact.segment) std::reverse(facets.begin(), facets.end());  // each begins where the one before ends
   } else {
     if (contact.is_of_itself() || contact.segment) facets = ordered_facets(facets, points);
-    std::map<int, int> number;
-    for (auto& facet : facets)
-      for (int& node : facet) {
-        const auto [found, is_new] = number.emplace(node, static_cast<int>(number.size()));
-        if (is_new) curve.nodes.push_back(node);
-        node = found->second;
-      }
+    number_vertices(facets, curve);
     places.resize(2, static_cast<Eigen::Index>(curve.nodes.size()));
     for (std::size_t v = 0; v < curve.nodes.size(); ++v)
       places.col(static_cast<Eigen::Index>(v)) = points.col(curve.nodes[v]).head<2>();
@@ -136,6 +141,23 @@ std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Po
   curve.vertex_count = static_cast<int>(places.cols());
   curve.patches = make_patches(facets, contact.smoothing, contact.corner, places);
   return {std::move(curve), std::move(places)};
+}
+
+std::pair<MasterCurve, Points<double>> make_surface_of(const Model& model, const Points<double>& points,
+                                                       int contact_index, std::vector<std::vector<int>> facets) {
+  const Contact& contact = model.scene.contacts[contact_index];
+  MasterCurve surface;
+  surface.contact = contact_index;
+  number_vertices(facets, surface);
+  surface.vertex_count = static_cast<int>(surface.nodes.size());
+  Points<double> places(3, surface.vertex_count);
+  for (int v = 0; v < surface.vertex_count; ++v) places.col(v) = points.col(surface.nodes[v]);
+  try {
+    surface.surface = make_surface(facets, contact.smoothing, contact.corner, places);
+  } catch (const std::runtime_error& error) {
+    throw ModelError(contact.master + ": " + error.what(), "/contacts/" + contact.name + "/master");
+  }
+  return {std::move(surface), std::move(places)};
 }
 
 MasterCurve integrated_curve(const Model& model, const Points<double>& points, int contact, int obstacle,

@@ -24,6 +24,11 @@ std::vector<std::vector<int>> facets_of(const Polyline& polyline);
 std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Points<double>& points, int contact,
                                                     int obstacle, std::vector<std::vector<int>> facets);
 
+/// Master surface in space of the contact Scene::contacts[contact], and the initial positions of its vertices, 3 x
+/// vertices. `facets`: of the side, three or four nodes each. Throws ModelError if they are no surface.
+std::pair<MasterCurve, Points<double>> make_surface_of(const Model& model, const Points<double>& points, int contact,
+                                                       std::vector<std::vector<int>> facets);
+
 /// The sides of quadratic elements that facets of a side are halves of (Segment::slave_edge).
 class QuadraticEdges {
  public:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "core/contact/contact_point.hpp"
 #include "core/contact/curve.hpp"
 #include "core/contact/face.hpp"
+#include "core/contact/surface.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/model/design_velocity.hpp"
 #include "core/model/scene.hpp"
@@ -37,14 +39,16 @@ struct BodyMesh {
   int first_memory = 0;  ///< first entry of the body in History::bodies
 };
 
-/// A side of a body, or a rigid polyline, as a curve of patches (core/contact/curve.hpp).
+/// A side of a body, or a rigid polyline, as a curve of patches (core/contact/curve.hpp); in space a side as a surface
+/// (core/contact/surface.hpp).
 struct MasterCurve {
   int contact = 0;
   int obstacle = -1;        ///< index of the polyline in Scene::obstacles; -1: a side of a body
   std::vector<int> nodes;   ///< per vertex: node; empty for a polyline
   std::vector<int> places;  ///< index of these nodes in Model::contact_nodes
   int vertex_count = 0;
-  std::vector<Patch> patches;
+  std::vector<Patch> patches;              ///< in the plane
+  std::vector<SurfacePatch> surface = {};  ///< in space
   /// Segment-integrated contact: the two nodes of each patch, and the nodes at which the side ends. Vertices of a
   /// polyline count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<std::vector<int>> facets = {};
@@ -52,6 +56,17 @@ struct MasterCurve {
   std::vector<std::array<int, 3>> edges = {};  ///< per facet: the side of a quadratic element that it is half of
   std::map<int, OwnVertex> own = {};           ///< of a side that is integrated against itself: per node
   bool is_integrated() const { return !facets.empty(); }
+  /// Whether a patch joins all of its neighbours without a corner.
+  bool goes_on_around(int patch) const {
+    if (surface.empty()) return patches[patch].goes_on_before() && patches[patch].goes_on_after();
+    const auto& at = surface[patch];
+    return std::all_of(at.goes_on.begin(), at.goes_on.begin() + at.corners, [](char goes_on) { return goes_on; });
+  }
+  /// The vertices of a patch; Patch::none for one that it lacks.
+  std::span<const int> vertices(int patch) const {
+    if (surface.empty()) return patches[patch].vertices;
+    return surface[patch].vertices;
+  }
   /// Whether its last patch ends where the first begins.
   bool is_loop() const { return patches.back().next == 0; }
 };
@@ -62,12 +77,13 @@ struct ContactPoint {
   /// patches of a MasterCurve; segments: mortar segments.
   enum class Master { obstacle, facet, vertex, faces, segments, curve };
   Master master = Master::obstacle;
-  int contact = 0;          ///< index in Scene::contacts
-  int obstacle = -1;        ///< index in Scene::obstacles; -1: deformable master
-  int curve = -1;           ///< index in Model::curves; -1: its master is no curve
-  Facing facing = {};       ///< what it faces of the curve at the start
-  OwnVertex own = {};       ///< set if the slave side is its own master
-  int foot = -1;            ///< offset of its foot in History::foot; -1: it has none
+  int contact = 0;                  ///< index in Scene::contacts
+  int obstacle = -1;                ///< index in Scene::obstacles; -1: deformable master
+  int curve = -1;                   ///< index in Model::curves; -1: its master is no curve
+  Facing facing = {};               ///< what it faces of the curve at the start
+  std::vector<Facing> starts = {};  ///< in space: this place on each patch of the surface that has it
+  OwnVertex own = {};               ///< set if the slave side is its own master
+  int foot = -1;                    ///< offset of its foot in History::foot; -1: it has none
   std::vector<int> nodes;   ///< slave nodes, then master nodes. facet: its two; vertex: itself, then the far ends
                             ///< of the facets whose end the projection is; faces: of all; curve: of the initial patch
   int slave_nodes = 1;      ///< number of slave nodes in `nodes`; more than 1 if segment-integrated
@@ -85,7 +101,8 @@ struct ContactPoint {
   std::vector<Segment> segments;
   bool area_of_bar = false;    ///< tributary area is the cross-section of the bar; else, without facets, 1
   bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
-  bool turns_frame = false;    ///< in space, with friction: its normal turns as it slides, and its tangents with it
+  bool turns_frame = false;    ///< in space, with friction: its normal turns as it slides over an obstacle, and its
+                               ///< tangents with it
   int slave_body = 0;
   double mesh_size = 0;   ///< mean length of the slave facets at the node, or of their edges; 0: none
   double tie_length = 0;  ///< length up to which an initial gap may be rounding of the coordinates
@@ -93,7 +110,10 @@ struct ContactPoint {
   int tangents = 0;       ///< 0 (frictionless) or D - 1
   int components() const { return 1 + tangents; }
   /// Number of its entries in History::foot, in D dimensions. pre: it has a foot.
-  int feet(int D) const { return curve >= 0 ? 1 : turns_frame ? 3 * D : D; }
+  int feet(int D) const {
+    if (curve >= 0) return D == 2 ? 1 : 4;
+    return turns_frame ? 3 * D : D;
+  }
 };
 
 /// A prescribed dof. supports[support] prescribes it along an axis, or along its inclined direction if axis ==

@@ -10,6 +10,7 @@
 #include "core/contact/facet_search.hpp"
 #include "core/contact/segments.hpp"
 #include "core/mesh/sides.hpp"
+#include "core/model/facings.hpp"
 #include "core/model/master_curve.hpp"
 #include "core/model/segment_search.hpp"
 
@@ -200,43 +201,64 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
   }
 }
 
-/// Contact along a curve: each slave node against the place of the curve that it faces. At finite strain a node that
-/// faces nothing yet is a point too.
-void pair_along_curve(Model& model, const Points<double>& points, const Pairing& pairing) {
+/// What a slave node faces of a curve at the start. Sets what it may face, if the curve is its own side.
+Facing facing_of(const CurveSearch& search, const MasterCurve& curve, const Eigen::Matrix2Xd& places, bool of_itself,
+                 const Vec<double, 2>& x, const Vec<double, 2>& outward, ContactPoint& point) {
+  if (!of_itself) return search.facing(x, outward);
+  const auto found = std::find(curve.nodes.begin(), curve.nodes.end(), point.nodes[0]);
+  point.own =
+      own_vertex(curve.patches, places, static_cast<int>(found - curve.nodes.begin()), outward, point.mesh_size);
+  if (!point.own.may_face_some(curve.patches)) return {};
+  Facing facing = search.facing_itself(x, outward, point.own, Patch::none);
+  if (facing.patch == Patch::none) facing.nearest = search.nearest_of_itself(x, outward, point.own, Patch::none);
+  return facing;
+}
+
+/// The same of a surface, with the patches that have this place.
+Facing facing_of(const SurfaceSearch& search, const MasterCurve& surface, const Points<double>&, bool,
+                 const Vec<double, 3>& x, const Vec<double, 3>& outward, ContactPoint& point) {
+  const Facing facing = search.facing(x, outward);
+  if (facing.patch != Patch::none) point.starts = patches_at(surface.surface, facing);
+  return facing;
+}
+
+/// Contact along a curve, in space a surface: each slave node against the place of it that it faces. At finite strain a
+/// node that faces nothing yet is a point too.
+template <int D, class Places>
+void pair_along(Model& model, const Points<double>& points, const Pairing& pairing, MasterCurve curve,
+                const Places& places) {
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  auto [curve, places] = make_curve(model, points, pairing.index, pairing.obstacle, pairing.master.facets);
-  const CurveSearch search(curve.patches, places);
+  const auto search = detail::search_of(curve, places);
   const bool of_itself = model.scene.contacts[pairing.index].is_of_itself();
   for (int node : pairing.slave.nodes) {
     if (has_no_area(model, points, pairing.slave, node)) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
     const bool has_side = is_continuum(shape) && !point.area_facets.empty();
-    const Vec<double, 2> outward =
-        has_side ? slave_normal<2>(point.area_facets, points) : Vec<double, 2>::Zero().eval();
+    const Vec<double, D> outward =
+        has_side ? slave_normal<D>(point.area_facets, points) : Vec<double, D>::Zero().eval();
     point.master = ContactPoint::Master::curve;
     point.curve = static_cast<int>(model.curves.size());
-    const Vec<double, 2> x = points.col(node).head<2>();
-    if (of_itself) {
-      const auto found = std::find(curve.nodes.begin(), curve.nodes.end(), node);
-      point.own =
-          own_vertex(curve.patches, places, static_cast<int>(found - curve.nodes.begin()), outward, point.mesh_size);
-      if (!point.own.may_face_some(curve.patches)) continue;
-      point.facing = search.facing_itself(x, outward, point.own, Patch::none);
-      if (point.facing.patch == Patch::none)
-        point.facing.nearest = search.nearest_of_itself(x, outward, point.own, Patch::none);
-    } else {
-      point.facing = search.facing(x, outward);
-    }
+    point.facing = facing_of(search, curve, places, of_itself, points.col(node), outward, point);
+    if (of_itself && !point.own.may_face_some(curve.patches)) continue;
     const bool faces = point.facing.patch != Patch::none;
     if (!faces && !model.scene.finite_strain) continue;
     point.shares_normal = !model.scene.finite_strain && pairing.obstacle < 0 && has_side;
     if (faces && pairing.obstacle < 0)
-      for (int vertex : curve.patches[point.facing.patch].vertices)
+      for (int vertex : curve.vertices(point.facing.patch))
         if (vertex != Patch::none) point.nodes.push_back(curve.nodes[vertex]);
     add_point(model, std::move(point));
   }
   model.effects.smoothing |= model.scene.contacts[pairing.index].smoothing != Smoothing::none;
   model.curves.push_back(std::move(curve));
+}
+
+void pair_along_curve(Model& model, const Points<double>& points, const Pairing& pairing) {
+  if (model.dimension == 2) {
+    auto [curve, places] = make_curve(model, points, pairing.index, pairing.obstacle, pairing.master.facets);
+    return pair_along<2>(model, points, pairing, std::move(curve), places);
+  }
+  auto [surface, places] = make_surface_of(model, points, pairing.index, pairing.master.facets);
+  pair_along<3>(model, points, pairing, std::move(surface), places);
 }
 
 /// Nodes in which a side turns by more than 60 degrees.
@@ -325,8 +347,8 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   if (pairing.obstacle < 0) {
     pairing.master = sides.master;  // of a side that touches itself the axis tells how thick it is
     if (!contact.is_of_itself()) pairing.master = surface_of(model, points, pairing.master);
-    if (model.dimension == 3 && model.scene.finite_strain)
-      throw ModelError("a deformable master in space needs small strain", where);
+    if (model.dimension == 3 && (contact.is_of_itself() || !contact.group.empty()))
+      throw ModelError("in space a contact has a slave and a master of its own", where);
     if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
   } else if (model.dimension == 3 && !is_in_space(model.scene.obstacles[pairing.obstacle].shape)) {
     throw ModelError("this surface is not made for space", "/obstacles/" + contact.master);

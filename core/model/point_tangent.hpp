@@ -85,7 +85,7 @@ std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Fa
 
 /// Whether the tangent of a point is by the displacements of all nodes that it touches.
 inline bool has_places(const Model& model, const ContactPoint& point) {
-  return model.dimension == 2 && (point.curve >= 0 || !point.segments.empty()) && model.effects.current_geometry;
+  return (point.curve >= 0 || !point.segments.empty()) && model.effects.current_geometry;
 }
 
 /// Tangent of an open point: it bears nothing wherever it is, and its rows are -A lambda.
@@ -96,7 +96,7 @@ PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing& 
   int faced = 0, count = input.model.dimension;
   if (has_places(input.model, point)) {
     tangent.places = places_of_tangent(input, p, facing, faced);
-    count = static_cast<int>(2 * tangent.places.size());
+    count *= static_cast<int>(tangent.places.size());
   }
   const int components = point.components();
   tangent.force_w = Matrix<T>::Constant(count, count, T(0));
@@ -110,7 +110,7 @@ PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing& 
 
 /// Tangent by the displacements of the nodes at the places `of`, of which the first `faced` have forces, `at_once` dofs
 /// in one sweep. `facing`: what the point faces of its curve.
-template <class T, int Tangents, int at_once>
+template <class T, int D, int Tangents, int at_once>
 PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing& facing, std::vector<int> of,
                                   int faced, const Vector<T>& compact, const Vector<T>& multiplier,
                                   ContactState state) {
@@ -119,7 +119,7 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
   PointTangent<T> tangent;
   auto& places = tangent.places;
   places = std::move(of);
-  const int count = static_cast<int>(2 * places.size());
+  const int count = static_cast<int>(D * places.size());
   tangent.force_w = Matrix<T>::Constant(count, count, T(0));
   tangent.force_l = Matrix<T>::Constant(count, C, T(0));
   tangent.row_w.resize(C, count);
@@ -128,25 +128,25 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
   for (int first = 0; first < count; first += at_once) {
     const Seeded seeded{first, std::min(at_once, count - first)};
     const auto displacement = [&](int place) {
-      const int k = 2 * static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin()) - first;
-      Vec<Probe, 2> u;
-      for (int i = 0; i < 2; ++i) {
-        u[i] = Probe(compact[2 * place + i]);
+      const int k = D * static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin()) - first;
+      Vec<Probe, D> u;
+      for (int i = 0; i < D; ++i) {
+        u[i] = Probe(compact[D * place + i]);
         if (k >= 0 && k < seeded.count) u[i].d[k + i] = T(1);
       }
       return u;
     };
     const Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement, input.time};
-    const auto at = place_point<2>(positions, input.model.points[p], facing, earlier(input, p));
+    const auto at = place_point<D>(positions, input.model.points[p], facing, earlier(input, p));
     const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, seeded.count);
-    const auto outcome = point_outcome<Probe, T, 2, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+    const auto outcome = point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
                                                               fixed_input.friction, 0, &state);
-    const Vec<Probe, 2> force = point_force<Probe, 2, Tangents>(at.geometry, outcome.traction);
+    const Vec<Probe, D> force = point_force<Probe, D, Tangents>(at.geometry, outcome.traction);
     for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
-      for (int i = 0; i < 2; ++i) {
+      for (int i = 0; i < D; ++i) {
         const Probe share = at.geometry.weights[n] * force[i];
-        for (int j = 0; j < seeded.count; ++j) tangent.force_w(2 * n + i, first + j) = share.d[j];
-        for (int c = 0; c < C; ++c) tangent.force_l(2 * n + i, c) = share.d[seeded.count + c];
+        for (int j = 0; j < seeded.count; ++j) tangent.force_w(D * n + i, first + j) = share.d[j];
+        for (int c = 0; c < C; ++c) tangent.force_l(D * n + i, c) = share.d[seeded.count + c];
       }
     take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, seeded, tangent);
   }
@@ -164,17 +164,20 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
   const Facing& found = by_places && point.curve >= 0 ? facing[p] : point.facing;
   if (state == ContactState::open) return detail::open_tangent(input, p, found);
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
-    if constexpr (D == 2)
-      if (by_places) {
-        // 18: the slave node and four vertices each of this patch and of the last; 12: where these are neighbours
-        int faced = 0;
-        auto places = detail::places_of_tangent(input, p, found, faced);
-        const auto tangent = [&]<int at_once>() {
-          return detail::tangent_by_places<T, Tangents, at_once>(input, p, found, std::move(places), faced, compact,
-                                                                 multiplier, state);
-        };
+    if (by_places) {
+      // In the plane 18: the slave node and four vertices each of this patch and of the last; 12: where these are
+      // neighbours. In space 27: in two or three sweeps of the 17 nodes of a regular patch.
+      int faced = 0;
+      auto places = detail::places_of_tangent(input, p, found, faced);
+      const auto tangent = [&]<int at_once>() {
+        return detail::tangent_by_places<T, D, Tangents, at_once>(input, p, found, std::move(places), faced, compact,
+                                                                  multiplier, state);
+      };
+      if constexpr (D == 2)
         return places.size() <= 6 ? tangent.template operator()<12>() : tangent.template operator()<18>();
-      }
+      else
+        return tangent.template operator()<27>();
+    }
     constexpr int C = 1 + Tangents;
     using Probe = Dual<D + C, T>;
     const bool present = input.model.effects.current_geometry;

@@ -81,20 +81,23 @@ struct Positions {
     else
       return displacement(point.places[0]);
   }
-  Placed<U, T> slave(const ContactPoint& point) const {
-    return {point2(slots.points, point.nodes[0]), motion_of_slave<2>(point)};
+  template <int D = 2>
+  Placed<U, T, D> slave(const ContactPoint& point) const {
+    return {slots.points.template block<D, 1>(0, point.nodes[0]), motion_of_slave<D>(point)};
   }
   Placed<U, T> vertex_of_polyline(int obstacle, int number) const {
     const auto frame_now = frame<2>(obstacle);
     const Vec<T, 2> X = start_of(model, obstacle, slots, model.node_count + number), u = frame_now.displacement(X);
     return {X, {U(u[0]), U(u[1])}};
   }
-  /// A vertex of a curve.
-  Placed<U, T> vertex(const MasterCurve& curve, int number) const {
-    if (curve.obstacle >= 0) return vertex_of_polyline(curve.obstacle, number);
-    const Vec<T, 2> X = point2(slots.points, curve.nodes[number]);
+  /// A vertex of a curve, in space of a surface.
+  template <int D = 2>
+  Placed<U, T, D> vertex(const MasterCurve& curve, int number) const {
+    if constexpr (D == 2)
+      if (curve.obstacle >= 0) return vertex_of_polyline(curve.obstacle, number);
+    const Vec<T, D> X = slots.points.template block<D, 1>(0, curve.nodes[number]);
     if constexpr (is_start)
-      return {X, Vec<U, 2>::Constant(U(0))};
+      return {X, Vec<U, D>::Constant(U(0))};
     else
       return {X, displacement(curve.places[number])};
   }
@@ -116,15 +119,15 @@ Positions<T, T, Still> positions_of_start(const Model& model, const Slots<T>& sl
 }
 
 /// The function place -> displacement of the contact node, from compact displacements.
-template <class T>
+template <int D = 2, class T>
 auto nodal_displacement(const Vector<T>& compact) {
-  return [&compact](int place) -> Vec<T, 2> { return compact.template segment<2>(2 * place); };
+  return [&compact](int place) -> Vec<T, D> { return compact.template segment<D>(D * place); };
 }
 
-/// Positions in the plane at compact displacements, which must outlive them.
-template <class T>
+/// Positions at compact displacements, which must outlive them.
+template <int D = 2, class T>
 auto positions_at(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time) {
-  const auto displacement = nodal_displacement(compact);
+  const auto displacement = nodal_displacement<D>(compact);
   return Positions<T, T, decltype(displacement)>{model, slots, displacement, time};
 }
 

@@ -10,7 +10,7 @@ namespace stickslip {
 template <class F>
 void for_each_place(const MasterCurve& curve, int patch, F&& f) {
   if (curve.obstacle >= 0 || patch == Patch::none) return;
-  for (int vertex : curve.patches[patch].vertices)
+  for (int vertex : curve.vertices(patch))
     if (vertex != Patch::none) f(curve.places[vertex]);
 }
 

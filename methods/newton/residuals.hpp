@@ -267,8 +267,7 @@ bool Evaluator<T>::keep_patches() {
   for (std::size_t p = 0; p < last_.size(); ++p) {
     if (!returned_[p] || last_[p].patch == Patch::none || (!kept_.empty() && kept_[p] != Patch::none)) continue;
     const auto& point = task_.contact.model.points[p];
-    const Patch& patch = task_.contact.model.curves[point.curve].patches[last_[p].patch];
-    if (patch.goes_on_before() && patch.goes_on_after()) continue;
+    if (task_.contact.model.curves[point.curve].goes_on_around(last_[p].patch)) continue;
     kept_.resize(last_.size(), Patch::none);
     kept_[p] = last_[p].patch;
     any = true;

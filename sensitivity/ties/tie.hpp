@@ -13,12 +13,13 @@
 #include <variant>
 
 #include "sensitivity/ties/contact_tie.hpp"
+#include "sensitivity/ties/edge_tie.hpp"
 #include "sensitivity/ties/flow_tie.hpp"
 #include "sensitivity/ties/vertex_tie.hpp"
 
 namespace stickslip {
 
-using KindOfTie = std::variant<ContactTie, FlowTie, VertexTie>;
+using KindOfTie = std::variant<ContactTie, FlowTie, VertexTie, EdgeTie>;
 
 class Tie : public KindOfTie {
  public:

@@ -58,7 +58,7 @@ bool changes_at(const Patch& patch, double bend) {
 template <class F>
 void for_each_vertex(const Model& model, const State<double>& state, int p, F&& f) {
   const auto& point = model.points[p];
-  if (point.curve < 0 || !point.segments.empty() || state.contact.facing.empty()) return;
+  if (model.dimension == 3 || point.curve < 0 || !point.segments.empty() || state.contact.facing.empty()) return;
   const auto& patches = model.curves[point.curve].patches;
   const int now = state.contact.facing[p].patch;
   if (now == Patch::none) return;

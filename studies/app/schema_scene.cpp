@@ -100,7 +100,7 @@ const char* const scene = R"json({
         "offset": {"description": "added to the gap (length); negative: an interference", "type": "number",
           "default": 0, "examples": [-0.01]},
         "surface": {
-          "description": "of a master of facets: straight, or smooth through their ends (Catmull-Rom, normals go on). Left out: smooth at finite strain, of contact at nodes; else faceted",
+          "description": "of a master of facets, in space faces: plain, or smooth through their nodes (Catmull-Rom, normals go on). Left out: smooth at finite strain, of contact at nodes; else faceted",
           "title": "faceted, smooth or object", "examples": ["smooth"],
           "anyOf": [{"enum": ["faceted", "smooth"]},
             {"type": "object", "required": ["smooth"], "additionalProperties": false, "properties": {

@@ -53,10 +53,8 @@ std::optional<NamedSide> touching_side(const JsonNode& node, SceneReading& readi
 
 /// `of_itself`: it is the slave too.
 void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, bool of_itself, SceneReading& reading) {
-  if (reading.dimension() == 3 && (reading.scene.finite_strain || of_itself)) {
-    node.error("is " + shown(node.value()) + "; in the space solid " +
-               (of_itself ? "no side touches itself" : "the master must be an obstacle at finite strain") + ": " +
-               listed(reading.obstacle_names));
+  if (reading.dimension() == 3 && of_itself) {
+    node.error("is " + shown(node.value()) + ", the slave; in the space solid no side touches itself");
     return;
   }
   const auto master = touching_side(node, reading);
@@ -78,10 +76,6 @@ void read_surface(const JsonNode& node, Contact& contact, const SceneReading& re
   const auto& obstacles = reading.scene.obstacles;
   if (std::any_of(obstacles.begin(), obstacles.end(), is_master)) {
     node.error("smooths facets, and the master " + in_quotes(contact.master) + " has none; allowed: \"faceted\"");
-    return;
-  }
-  if (reading.dimension() == 3) {
-    node.error(R"(smooths edges of the plane; allowed in the space solid: "faceted")");
     return;
   }
   contact.smoothing = Smoothing::catmull_rom;
@@ -152,7 +146,7 @@ std::vector<std::string> bodies_between(const JsonNode& node, bool self, const S
 /// of two alike the one named first. `self`: each also touches itself.
 void read_pairs(const Contact& common, const JsonNode& between, bool self, SceneReading& reading) {
   if (reading.dimension() == 3) {
-    between.error_at_key("bodies touch one another in a plane space alone; in the space solid masters are obstacles");
+    between.error_at_key("is for a plane space; in the space solid a contact has a slave and a master");
     return;
   }
   constexpr double alike = 1e-9;
@@ -234,7 +228,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   // Why the defaults: the geometry of integrated contact is continuous, from facet to facet and over ends; so is the
   // normal of a smooth surface. A point that slides over facets has no equilibrium at some of their vertices.
   const bool is_free = reading.scene.finite_strain && !node.find("surface") && has_facets(contact.master, reading);
-  contact.segment = is_solid && is_free;
+  contact.segment = is_solid && is_free && reading.dimension() == 2;
   const bool self = between && node.find("self") && node.find("self")->boolean().value_or(false);
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";

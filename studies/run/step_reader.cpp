@@ -24,8 +24,9 @@ std::vector<char> contacts_at_ends(const Model& model, const State<double>& befo
     const auto& point = model.points[p];
     if (point.curve < 0 || point.tangents == 0 || model.curves[point.curve].is_integrated()) continue;
     const Facing &now = state.contact.facing[p], &last = before.contact.facing[p];
-    const auto is_past_end = [&] {
-      const Patch& patch = model.curves[point.curve].patches[now.patch];
+    const auto is_past_end = [&, &curve = model.curves[point.curve]] {
+      if (!curve.surface.empty()) return is_past_border(curve.surface[now.patch], {now.xi, now.eta}, rounding);
+      const Patch& patch = curve.patches[now.patch];
       return (patch.previous == Patch::none && now.xi < -rounding) ||
              (patch.next == Patch::none && now.xi > 1 + rounding);
     };

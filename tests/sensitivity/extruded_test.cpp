@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 
 #include "tests/support/finite_strain.hpp"
 
@@ -66,6 +67,36 @@ Scene under_a_rough_drum() {
   return s;
 }
 
+/// A rubber die that is pressed into a rubber slab and drawn along it, over patches of a smooth surface.
+Scene drawn_die(Smoothing smoothing) {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{1, 2}, {2, 4}};
+  const Number mu = scenes::parameter(s, "mu", 0.3), E = scenes::parameter(s, "E", 10.0),
+               width = scenes::parameter(s, "width", 4.0);
+  BoxMesh slab;
+  slab.max = {width, 1.0};
+  slab.cells = {12, 3};
+  QuadMesh die;
+  die.corners = {{{0.9, 1.05}, {1.7, 1.0}, {1.8, 1.6}, {0.8, 1.6}}};
+  die.cells = {4, 2};
+  s.bodies = {{"slab", slab, NeoHookean{E, 0.3, NeoHookean::Volumetric::log}, "", 1.0},
+              {"die", die, NeoHookean{50.0, 0.3, NeoHookean::Volumetric::log}, "", 1.0}};
+  s.bodies[0].thickness = s.bodies[1].thickness = 0.8;
+  s.contacts = {scenes::contact("sole", "die.bottom", "slab.top")};
+  s.contacts[0].smoothing = smoothing;
+  s.contacts[0].friction = mu;
+  const Table still = scenes::table({{0, 0.0}});
+  s.supports = {scenes::support("slab.bottom", {{'x', still}, {'y', still}}),
+                scenes::support("die.top", {{'x', scenes::table({{1, 0.0}, {2, 0.7}})},
+                                            {'y', scenes::table({{0, 0.0}, {1, -0.15}})}})};
+  s.responses = {scenes::response("x", Kind::reaction, "die.top", "x"),
+                 scenes::response("normal", Kind::contact_force, "sole", "normal"),
+                 scenes::response("energy", Kind::strain_energy, ""),
+                 scenes::response("heat", Kind::dissipation, "sole")};
+  return s;
+}
+
 const J2Plastic metal{1000.0, 0.3, 12.0, 50.0};
 
 std::vector<Scene> plane_scenes() {
@@ -83,7 +114,9 @@ std::vector<Scene> plane_scenes() {
                          under_a_drum(true),
                          under_a_rough_drum(),
                          scenes::two_boxes(5, 8),
-                         scenes::two_disks(6, false)};
+                         scenes::two_disks(6, false),
+                         drawn_die(Smoothing::catmull_rom),
+                         drawn_die(Smoothing::b_spline)};
   for (auto& scene : all) {  // what the plane alone can be asked
     std::erase_if(scene.responses, [](const Response& response) {
       return response.component == Response::Component::moment || response.kind == Kind::contact_half_width;
@@ -180,12 +213,12 @@ Scene block_in_a_bowl(const Material& material, bool finite) {
 }
 
 /// Two blocks whose meshes do not match: the upper one is pressed, drawn along two directions and twisted.
-Scene block_on_block(const std::string& element, bool matching = false) {
+Scene block_on_block(const std::string& element, bool matching = false, double degrees = 3) {
   Scene s;
   s.space = Space::solid;
   s.legs = {{1, 2}, {2, 3}};
   const Number mu = scenes::parameter(s, "mu", 0.3), E = scenes::parameter(s, "E", 1000.0),
-               down = scenes::parameter(s, "down", -0.02), twist = scenes::parameter(s, "twist", 3.0),
+               down = scenes::parameter(s, "down", -0.02), twist = scenes::parameter(s, "twist", degrees),
                depth = scenes::parameter(s, "depth", 0.83), edge = scenes::parameter(s, "edge", 0.21);
   BoxMesh upper, lower;
   upper.min = {edge, 0.17, 1.0};
@@ -239,6 +272,21 @@ TEST(SolidBodies, OfMatchingMeshesPassThePatchTest) {
   }
 }
 
+/// The same of rubber, at finite strain: the upper one is pressed deep, and slides and twists over faces of the lower.
+Scene sliding_blocks(Smoothing smoothing, const std::string& element = "H8") {
+  Scene s = block_on_block(element, false, 12.0);
+  s.finite_strain = true;
+  s.bodies[0].material = NeoHookean{std::get<LinearElastic>(s.bodies[0].material).E, 0.3};
+  s.bodies[1].material = NeoHookean{400.0, 0.3};
+  std::get<BoxMesh>(s.bodies[0].mesh).cells = {2, 2, 1};
+  std::get<BoxMesh>(s.bodies[1].mesh).cells = {3, 3, 1};  // no node begins on an edge, where the numbering chooses
+  s.contacts[0].smoothing = smoothing;
+  auto& move = s.supports.back().move;
+  move['x'] = scenes::table({{1, 0.0}, {2, 0.17}});
+  move['y'] = scenes::table({{1, 0.0}, {2, -0.1}});
+  return s;
+}
+
 /// The side of a box that another becomes where x becomes y, y becomes z and z becomes x.
 std::string turned_side(const std::string& side) {
   const std::map<std::string, std::string> becomes{{"left", "front"}, {"right", "back"},  {"front", "bottom"},
@@ -251,23 +299,29 @@ std::string turned_place(const std::string& place) {
   return dot == std::string::npos ? place : place.substr(0, dot + 1) + turned_side(place.substr(dot + 1));
 }
 
-/// twisted_block with other names of the axes: frames, numbers of nodes and the direction of grading change.
+/// A scene with other names of the axes: frames, numbers of nodes and the direction of grading change.
 Scene turned(Scene s) {
   const auto turn = [](auto& three) { std::rotate(three.rbegin(), three.rbegin() + 1, three.rend()); };
-  auto& box = std::get<BoxMesh>(s.bodies[0].mesh);
-  turn(box.min);
-  turn(box.max);
-  turn(box.cells);
-  box.grade_towards = turned_side(box.grade_towards);
-  auto& plane = std::get<Plane>(s.obstacles[0].shape);
-  turn(plane.point);
-  turn(plane.normal);
+  for (auto& body : s.bodies) {
+    auto& box = std::get<BoxMesh>(body.mesh);
+    turn(box.min);
+    turn(box.max);
+    turn(box.cells);
+    box.grade_towards = turned_side(box.grade_towards);
+  }
+  for (auto& obstacle : s.obstacles) {
+    auto& plane = std::get<Plane>(obstacle.shape);
+    turn(plane.point);
+    turn(plane.normal);
+  }
   s.contacts[0].slave = turned_place(s.contacts[0].slave);
+  s.contacts[0].master = turned_place(s.contacts[0].master);
   for (auto& support : s.supports) {
     support.on = turned_place(support.on);
     std::map<char, Table> move;
     for (const auto& [axis, table] : support.move) move[axis == 'z' ? 'x' : static_cast<char>(axis + 1)] = table;
     support.move = move;
+    if (!support.rotate) continue;
     turn(support.rotate->center);
     turn(support.rotate->axis);
   }
@@ -291,8 +345,8 @@ TEST(SolidBodies, DoNotDependOnTheNamesOfTheAxes) {
   UzawaAL uzawa;
   uzawa.tolerance = 1e-12;
   for (const Method& method : {Method(Penalty{}), Method(uzawa), Method(MonolithicAL{})})
-    for (const Scene& scene :
-         {twisted_block(LinearElastic{1000.0, 0.3}, false), twisted_block(rubber, true), twisted_block(metal, true)}) {
+    for (const Scene& scene : {twisted_block(LinearElastic{1000.0, 0.3}, false), twisted_block(rubber, true),
+                               twisted_block(metal, true), sliding_blocks(Smoothing::catmull_rom)}) {
       const auto one = scenes::run(scene, method), other = scenes::run(turned(scene), method);
       ASSERT_TRUE(is_converged(one.trajectory.status)) << one.trajectory.message;
       ASSERT_EQ(one.trajectory.increments.size(), other.trajectory.increments.size()) << other.trajectory.message;
@@ -317,6 +371,46 @@ TEST(SolidBodies, DoNotDependOnTheNamesOfTheAxes) {
     }
 }
 
+/// Two blocks that an interference presses, and that are turned as one: what they bear turns with them.
+TEST(SolidBodies, ThatTurnTogetherKeepWhatTheyBearWhereTheyTouch) {
+  const Table still = scenes::table({{0, 0.0}}), turn = scenes::table({{2, 0.0}, {3, 50.0}});
+  Scene s = sliding_blocks(Smoothing::catmull_rom);
+  s.legs = {{1, 2}, {2, 2}, {3, 5}};
+  for (auto& support : s.supports) {
+    support.rotate = Rotation{{0.6, 0.4, 0.0}, {0.3, -0.2, 1.0}, turn};
+    support.move = {{'x', still}, {'y', still}, {'z', still}};
+  }
+  s.contacts[0].offset = -0.05;  // what presses them
+  s.responses = {scenes::response("press", Kind::contact_force, "touch", "normal"),
+                 scenes::response("x", Kind::contact_force, "touch", "x"),
+                 scenes::response("y", Kind::contact_force, "touch", "y"),
+                 scenes::response("z", Kind::contact_force, "touch", "z"),
+                 scenes::response("energy", Kind::strain_energy, "")};
+  for (const Method& method : {Method(Penalty{}), Method(MonolithicAL{})}) {
+    const auto run = scenes::run(s, method);
+    ASSERT_TRUE(is_converged(run.trajectory.status)) << run.trajectory.message;
+    const auto& increments = run.trajectory.increments;
+    const auto& before = increments[3].state.contact;
+    const auto& after = increments.back().state.contact;
+    double shear = 0;
+    for (const auto& point : run.model.points) {
+      const auto k = point.multiplier;
+      EXPECT_NEAR(after.traction[k], before.traction[k], 1e-8 * std::abs(before.traction[k])) << name_of(method);
+      const double t = before.traction.segment(k + 1, 2).norm();
+      shear = std::max(shear, t);
+      EXPECT_NEAR(after.traction.segment(k + 1, 2).norm(), t, 1e-8 * std::abs(before.traction[k])) << name_of(method);
+    }
+    EXPECT_GT(shear, 1);
+    // the force of contact is turned by the angle of the table about the axis
+    const auto force = [&](int n) { return Vec<double, 3>(run.value("x", n), run.value("y", n), run.value("z", n)); };
+    const double angle = 50 * std::numbers::pi / 180;
+    const Vec<double, 3> e = Vec<double, 3>(0.3, -0.2, 1).normalized(), f = force(3);
+    const Vec<double, 3> expected =
+        std::cos(angle) * f + std::sin(angle) * cross<double>(e, f) + (1 - std::cos(angle)) * e.dot(f) * e;
+    EXPECT_LE((force(static_cast<int>(increments.size()) - 1) - expected).norm(), 1e-8 * f.norm()) << name_of(method);
+  }
+}
+
 TEST(SolidBodies, HaveTheDerivativesOfTheOracleInBothModes) {
   const NeoHookean rubber{1000.0, 0.3};
   for (const Method& method : scenes::finite_schemes()) {
@@ -332,6 +426,25 @@ TEST(SolidBodies, HaveTheDerivativesOfTheOracleInBothModes) {
   scenes::expect_derivatives_in_both_modes(block_on_block("T4"), monolithic);
   scenes::expect_derivatives_in_both_modes(twisted_block(metal, false), monolithic);
   scenes::expect_derivatives_in_both_modes(twisted_block(metal, true), monolithic);
+}
+
+/// Few steps and parameters: the oracle runs each in complex numbers.
+Scene few_steps(Scene s) {
+  s.legs = {{1, 1}, {2, 2}};
+  std::erase_if(s.parameters, [](const Parameter& p) { return p.name == "down" || p.name == "E"; });
+  return s;
+}
+
+TEST(SolidBodies, ThatSlideOverOneAnotherHaveTheDerivativesOfTheOracle) {
+  const auto schemes = scenes::finite_schemes();
+  for (const std::size_t k : {0U, 1U, 4U})  // one a method
+    scenes::expect_derivatives_in_both_modes(few_steps(sliding_blocks(Smoothing::catmull_rom)), schemes[k]);
+}
+
+TEST(SolidBodies, ThatSlideOverSplinesAndTrianglesHaveTheDerivativesOfTheOracle) {
+  const MonolithicAL monolithic;
+  scenes::expect_derivatives_in_both_modes(few_steps(sliding_blocks(Smoothing::b_spline)), monolithic);
+  scenes::expect_derivatives_in_both_modes(few_steps(sliding_blocks(Smoothing::catmull_rom, "T4")), monolithic);
 }
 
 }  // namespace

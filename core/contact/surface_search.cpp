@@ -1,0 +1,234 @@
+#include "core/contact/surface_search.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace stickslip {
+namespace {
+
+/// Share of a patch by which a foot may lie past a border, as past the end of a curve. Why: at a border the normal is
+/// that of one side, so a node in a plane of symmetry, where a body is cut, projects a little past it.
+constexpr double past_border = 0.01;
+
+Vec<double, 2> place_of(const Facing& facing) { return {facing.xi, facing.eta}; }
+
+/// The place of an edge at a share of it, from its first corner.
+Vec<double, 2> on_edge(int corners, int edge, double share) {
+  const Vec<double, 2> from = face_corner(corners, edge), to = face_corner(corners, edge + 1);
+  return from + share * (to - from);
+}
+
+/// Share of an edge at which a place near it is.
+double along_edge(int corners, int edge, const Vec<double, 2>& at) {
+  const Vec<double, 2> from = face_corner(corners, edge), way = face_corner(corners, edge + 1) - from;
+  return std::clamp((at - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
+}
+
+std::vector<FacePlace> faces_of(const std::vector<SurfacePatch>& patches) {
+  std::vector<FacePlace> faces;
+  for (const auto& patch : patches) {
+    auto& face = faces.emplace_back();
+    face.corners = patch.corners;
+    std::copy_n(patch.vertices.begin(), patch.corners, face.nodes.begin());
+  }
+  return faces;
+}
+
+std::vector<std::array<char, 4>> borders_of(const std::vector<SurfacePatch>& patches) {
+  std::vector<std::array<char, 4>> borders;
+  for (const auto& patch : patches) {
+    auto& border = borders.emplace_back();
+    for (int k = 0; k < patch.corners; ++k) border[k] = patch.across[k] == Patch::none;
+  }
+  return borders;
+}
+
+Facing facing_on_edge(const std::vector<SurfacePatch>& patches, int patch, int edge, double share) {
+  const Vec<double, 2> at = on_edge(patches[patch].corners, edge, share);
+  Facing facing{patch, at[0]};
+  facing.eta = at[1];
+  return facing;
+}
+
+}  // namespace
+
+std::vector<Facing> patches_at(const std::vector<SurfacePatch>& patches, Facing facing, double within) {
+  const auto is_on = [&](const Facing& at, int k) {
+    return std::abs(beyond_edge(patches[at.patch].corners, k, place_of(at))) <= within;
+  };
+  const auto share_of = [&](const Facing& at, int k) {  // at a corner all of it
+    const double share = along_edge(patches[at.patch].corners, k, place_of(at));
+    return share <= within ? 0 : share >= 1 - within ? 1 : share;
+  };
+  for (int k = 0; k < patches[facing.patch].corners; ++k)
+    if (is_on(facing, k)) facing = facing_on_edge(patches, facing.patch, k, share_of(facing, k));
+  std::vector<Facing> all{facing};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Facing at = all[i];
+    for (int k = 0; k < patches[at.patch].corners; ++k) {
+      const int next = patches[at.patch].across[k];
+      if (next == Patch::none || !is_on(at, k)) continue;
+      if (std::any_of(all.begin(), all.end(), [&](const Facing& other) { return other.patch == next; })) continue;
+      all.push_back(facing_on_edge(patches, next, patches[at.patch].across_edge[k], 1 - share_of(at, k)));
+    }
+  }
+  return all;
+}
+
+std::array<Facing, 2> places_on_edge(const std::vector<SurfacePatch>& patches, const Facing& facing, int edge) {
+  const SurfacePatch& patch = patches[facing.patch];
+  const double share = along_edge(patch.corners, edge, place_of(facing));
+  return {facing_on_edge(patches, facing.patch, edge, share),
+          facing_on_edge(patches, patch.across[edge], patch.across_edge[edge], 1 - share)};
+}
+
+SurfaceSearch::SurfaceSearch(const std::vector<SurfacePatch>& patches, const Points<double>& positions)
+    : patches_(patches), positions_(positions), faces_(positions, faces_of(patches), borders_of(patches)) {}
+
+/// Vectors from x to the vertices of a patch.
+Eigen::Matrix3Xd SurfaceSearch::arms(int patch, const Vec<double, 3>& x) const {
+  const auto& vertices = patches_[patch].vertices;
+  Eigen::Matrix3Xd arms(3, static_cast<Eigen::Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    arms.col(static_cast<Eigen::Index>(i)) = positions_.col(vertices[i]) - x;
+  return arms;
+}
+
+double SurfaceSearch::gap(const Facing& at, const Vec<double, 3>& x) const {
+  const Eigen::Matrix3Xd y = arms(at.patch, x) * place_weights(patches_[at.patch], place_of(at)).leftCols<3>();
+  return -y.col(0).dot(cross<double>(y.col(1), y.col(2)).normalized());
+}
+
+/// Newton's method for the foot of x, from the start value `at`. It may pass to the next patch, `hops` times at most,
+/// where the two patches join smoothly. patch = none if it does not end, or x is beyond a centre of curvature.
+Facing SurfaceSearch::newton_foot(Facing at, const Vec<double, 3>& x, int hops) const {
+  constexpr int most = 50;
+  constexpr double longest = 0.5, settled = 1e-10, farthest = 1;
+  for (int step = 0; step < most; ++step) {
+    const SurfacePatch& patch = patches_[at.patch];
+    const Vec<double, 2> from = place_of(at);
+    const PlaceWeights weights = place_weights(patch, from);
+    const Eigen::Matrix3Xd around = arms(at.patch, x);
+    const Eigen::Matrix3Xd y = around * weights.leftCols<3>();
+    const Vec<double, 3> off = -y.col(0);
+    const Mat<double, 2> metric = y.rightCols<2>().transpose() * y.rightCols<2>();
+    Mat<double, 2> slope = foot_slope(weights, around, off);
+    const double determinant =
+        slope.determinant() * metric.determinant();  // of slope as it was: 1 over that of the inverse
+    const bool is_minimum = determinant > 0 && slope.trace() > 0 && determinant < 1e8;
+    if (!is_minimum) slope = foot_slope(weights, around, Vec<double, 3>::Zero());
+    Vec<double, 2> move = slope * Vec<double, 2>(off.dot(y.col(1)), off.dot(y.col(2)));
+    const double length = move.cwiseAbs().maxCoeff();
+    if (!(length < std::numeric_limits<double>::infinity())) return {};
+    if (length <= settled) return is_minimum ? at : Facing{};
+    if (length > longest) move *= longest / length;
+    Vec<double, 2> to = from + move;
+    int crossed = Patch::none;
+    double earliest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < patch.corners && hops > 0; ++k) {
+      const double before = beyond_edge(patch.corners, k, from), after = beyond_edge(patch.corners, k, to);
+      if (!patch.goes_on[k] || after <= at_face_edge || after <= before) continue;
+      const double share = std::max(0.0, -before) / (after - before);
+      if (share < earliest) {
+        earliest = share;
+        crossed = k;
+      }
+    }
+    if (crossed != Patch::none) {
+      const Vec<double, 2> place = from + std::min(earliest, 1.0) * move;
+      Facing leaving{at.patch, place[0]};
+      leaving.eta = place[1];
+      at = places_on_edge(patches_, leaving, crossed)[1];
+      --hops;
+      continue;
+    }
+    for (int i = 0; i < 2; ++i) to[i] = std::clamp(to[i], -farthest, 1 + farthest);
+    at.xi = to[0];
+    at.eta = to[1];
+  }
+  return {};
+}
+
+Facing SurfaceSearch::larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const {
+  Facing best;
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const Facing& foot : feet) {
+    if (foot.patch == Patch::none) continue;
+    const double of_foot = gap(foot, x), rounding = at_face_edge * std::abs(largest);
+    const bool is_larger = best.patch == Patch::none || of_foot > largest + rounding;
+    if (!is_larger && (of_foot < largest - rounding || foot.patch > best.patch)) continue;
+    best = foot;
+    largest = of_foot;
+  }
+  return best;
+}
+
+/// What x faces if its foot on a patch lies past an edge at which the surface is not smooth.
+Facing SurfaceSearch::beyond_edges(const Facing& at, const Vec<double, 3>& x) const {
+  const SurfacePatch& patch = patches_[at.patch];
+  if (is_past_border(patch, place_of(at), past_border)) return {};
+  std::vector<Facing> feet{at};
+  for (int k = 0; k < patch.corners; ++k) {
+    if (patch.goes_on[k] || beyond_edge(patch.corners, k, place_of(at)) <= at_face_edge) continue;
+    if (patch.across[k] != Patch::none) feet.push_back(newton_foot(places_on_edge(patches_, at, k)[1], x, 0));
+  }
+  return feet.size() == 1 ? at : larger_gap(feet, x);
+}
+
+Facing SurfaceSearch::nearest_facing(const std::vector<Near>& near, const Vec<double, 3>& x) const {
+  constexpr int hops = 8;
+  if (near.empty()) return {};
+  const auto foot = [&](const Near& from, int most) {
+    Facing start{from.face, from.place.at[0]};
+    start.eta = from.place.at[1];
+    return newton_foot(start, x, most);
+  };
+  const Near* first = &near.front();
+  for (const Near& at : near) {
+    const bool is_inside = at.place.part == FacePart::inside, has_inside = first->place.part == FacePart::inside;
+    if (is_inside != has_inside ? is_inside : at.face < first->face) first = &at;
+  }
+  const bool is_smooth = patches_[first->face].control.size() > 0;
+  if (is_smooth) {
+    const Facing at = foot(*first, hops);
+    return at.patch == Patch::none ? at : beyond_edges(at, x);
+  }
+  if (first->place.part == FacePart::inside) return foot(*first, 0);
+  std::vector<Facing> feet;
+  for (const Near& at : near) {
+    const Facing there = foot(at, 0);
+    if (there.patch != Patch::none && !is_past_border(patches_[there.patch], place_of(there), past_border))
+      feet.push_back(there);
+  }
+  return larger_gap(feet, x);
+}
+
+Facing SurfaceSearch::facing(const Vec<double, 3>& x, const Vec<double, 3>& outward) const {
+  const Vec<double, 3> any = Vec<double, 3>::Zero();
+  Facing at;
+  at.distance = std::numeric_limits<double>::infinity();
+  if (!x.allFinite()) return at;
+  const auto found = nearest_facing(faces_.nearest(x, outward), x);
+  const bool is_inside = found.patch != Patch::none && gap(found, x) < 0;
+  if (found.patch != Patch::none && !(is_inside && outward != any)) return found;
+  const auto near = faces_.nearest(x, any);
+  if (is_inside) {
+    const auto nearest = nearest_facing(near, x);
+    if (nearest.patch == Patch::none || gap(nearest, x) < 0) return found;
+  }
+  if (near.empty()) return at;
+  at.distance = near.front().distance;
+  at.nearest =
+      std::min_element(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.face < b.face; })->face;
+  return at;
+}
+
+Facing SurfaceSearch::foot_on(int patch, const Vec<double, 3>& x) const {
+  Facing start{patch, patches_[patch].corners == 3 ? 1.0 / 3 : 0.5};
+  start.eta = start.xi;
+  return newton_foot(start, x, 0);
+}
+
+}  // namespace stickslip

@@ -1,0 +1,208 @@
+#include "sensitivity/ties/edge_tie.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+
+#include "core/model/contact_geometry.hpp"
+#include "core/model/loading.hpp"
+#include "sensitivity/ties/tie.hpp"
+
+namespace stickslip {
+namespace {
+
+Vec<double, 2> place_of(const Facing& facing) { return {facing.xi, facing.eta}; }
+
+/// The normal of a patch at a place, and how it turns along each direction of its tangent plane.
+struct Shape {
+  Eigen::Matrix<double, 3, 2> slopes;
+  Vec<double, 3> normal;
+  Eigen::Matrix3d turn;  ///< dn = turn dx, 1 / length
+  double size;           ///< of the patch, length
+};
+
+/// `vertex(v)`: where vertex v of the surface is.
+template <class Vertex>
+Shape shape_at(const SurfacePatch& patch, const Vec<double, 2>& at, Vertex&& vertex) {
+  Eigen::Matrix3Xd arms(3, static_cast<Eigen::Index>(patch.vertices.size()));
+  const Placed<double, double, 3> origin = vertex(patch.vertices[0]);
+  for (std::size_t i = 0; i < patch.vertices.size(); ++i)
+    arms.col(static_cast<Eigen::Index>(i)) = vertex(patch.vertices[i]) - origin;
+  const Eigen::Matrix<double, 3, 5> y = arms * place_weights(patch, at).middleCols<5>(1);
+  const Eigen::Matrix<double, 3, 2> slopes = y.leftCols<2>();
+  const Vec<double, 3> across = cross<double>(y.col(0), y.col(1));
+  const double area = across.norm();
+  Shape shape{slopes, across / area, Eigen::Matrix3d::Zero(), std::sqrt(area)};
+  Eigen::Matrix<double, 3, 2> turns;
+  for (int i = 0; i < 2; ++i) {
+    const Vec<double, 3> rate = (cross<double>(y.col(2 + i), y.col(1)) + cross<double>(y.col(0), y.col(3 + i))) / area;
+    turns.col(i) = rate - rate.dot(shape.normal) * shape.normal;
+  }
+  shape.turn = turns * (slopes.transpose() * slopes).inverse() * slopes.transpose();
+  return shape;
+}
+
+/// What jumps between two patches at one place.
+struct Jump {
+  double turn;  ///< sine of the angle between the normals
+  double bend;  ///< of the curvature, times the size
+  bool is_kink() const { return turn > straight || bend > straight; }
+};
+Jump jump_between(const Shape& a, const Shape& b) {
+  return {cross<double>(a.normal, b.normal).norm(), (a.turn - b.turn).norm() * a.size};
+}
+
+bool is_along_surface(const Model& model, const State<double>& state, int p) {
+  const auto& point = model.points[p];
+  return model.dimension == 3 && model.slides_along_curves() && point.curve >= 0 &&
+         state.contact.facing[p].patch != Patch::none;
+}
+
+/// The foot of a point on the patch that it faces, in a scalar.
+template <class T>
+SurfacePlace<T> foot_of(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time, int p,
+                        const Facing& facing) {
+  const auto& point = model.points[p];
+  const auto& surface = model.curves[point.curve];
+  const auto positions = detail::positions_at<3>(model, slots, compact, time);
+  const auto vertex = [&](int v) { return positions.template vertex<3>(surface, v); };
+  return foot_on_patch<T, T>(surface.surface[facing.patch], detail::surface_reference(point, facing.patch),
+                             place_of(facing), positions.template slave<3>(point), vertex)
+      .place;
+}
+
+/// beyond_edge() of a foot with its derivatives.
+Direction beyond(const SurfacePlace<Direction>& foot, int edge) {
+  const int corners = foot.patch->corners;
+  Direction way(beyond_edge(corners, edge, foot.at));
+  const Vec<double, 2> origin = Vec<double, 2>::Zero();
+  for (int i = 0; i < 2; ++i) {
+    Vec<double, 2> along = origin;
+    along[i] = 1;
+    way += foot.rest[i] * (beyond_edge(corners, edge, along) - beyond_edge(corners, edge, origin));
+  }
+  return way;
+}
+
+bool reads_gaps(const Scene& scene) {
+  return std::any_of(scene.responses.begin(), scene.responses.end(),
+                     [](const Response& response) { return response.kind == Response::Kind::gap; });
+}
+
+}  // namespace
+
+void EdgeTie::find(const SolvedState& of, std::vector<Tie>& ties) {
+  const auto& [model, slots, state, memory, rho, cone, time, largest] = of;
+  if (model.dimension != 3 || !model.slides_along_curves()) return;
+  const bool all = reads_gaps(model.scene);
+  const Vector<double> compact = to_compact(model, state.displacement);
+  const auto positions = detail::positions_at<3>(model, slots, compact, time);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    if (!is_along_surface(model, state, p)) continue;
+    const auto& point = model.points[p];
+    const double negligible = weak_margin * largest;
+    const bool open = state.contact.state[p] == ContactState::open;
+    if (open && elastic_traction(slots, p) * state.contact.gap[p] > negligible && !all) continue;
+    const auto& surface = model.curves[point.curve];
+    const auto on_patches = patches_at(surface.surface, state.contact.facing[p], weak_margin);
+    if (on_patches.size() < 2) continue;
+    const auto vertex = [&](int v) { return positions.template vertex<3>(surface, v); };
+    const auto shape = [&](const Facing& at) { return shape_at(surface.surface[at.patch], place_of(at), vertex); };
+    const Shape first = shape(on_patches[0]);
+    Vec<double, 3> tangent = Vec<double, 3>::Zero();
+    if (point.foot >= 0) tangent = first.slopes * state.history.foot.template segment<2>(point.foot + 2);
+    double turn = 0;
+    bool is_kink = false;
+    std::vector<Place> places;
+    for (const Facing& facing : on_patches) {
+      const Shape here = shape(facing);
+      const Jump jump = jump_between(first, here);
+      turn = std::max(turn, jump.turn);
+      is_kink |= jump.is_kink();
+      const Mat<double, 2> metric = here.slopes.transpose() * here.slopes;
+      places.push_back({facing, metric.inverse() * here.slopes.transpose() * tangent});
+    }
+    const bool bears = -state.contact.traction[point.multiplier] > negligible;
+    if (is_kink) ties.emplace_back(EdgeTie{p, std::move(places), !bears || turn <= straight});
+  }
+}
+
+std::vector<Choice> EdgeTie::choices(const Model&) const {
+  std::vector<Choice> all;
+  if (crosses)
+    for (const Place& place : places) all.push_back({place.facing.patch});
+  return all;
+}
+
+Choice EdgeTie::now(const Model&, const State<double>& at) const { return {at.contact.facing[point].patch}; }
+
+void EdgeTie::set(const Model& model, const Choice& choice, State<double>& at) const {
+  const auto& [facing, tangent] = *std::find_if(
+      places.begin(), places.end(), [&](const Place& place) { return place.facing.patch == choice.branch; });
+  at.contact.facing[point] = facing;
+  at.history.patch[point] = choice.branch;
+  const auto& of = model.points[point];
+  if (of.foot < 0) return;
+  at.history.foot.segment<2>(of.foot) = place_of(facing) - detail::surface_reference(of, choice.branch);
+  at.history.foot.segment<2>(of.foot + 2) = tangent;
+}
+
+Verdict EdgeTie::verdict(const SidedDerivative& derivative) const {
+  const auto& [of, block, rho, side, scales, flows] = derivative;
+  const Facing facing = of.at.contact.facing[point];
+  const auto foot =
+      foot_of(of.model, block.slots, to_compact(of.model, block.current.displacement), of.time, point, facing);
+  const auto& patch = *foot.patch;
+  const Vector<double> compact = to_compact(of.model, of.at.displacement);
+  const auto positions = detail::positions_at<3>(of.model, of.slots, compact, of.time);
+  const auto& surface = of.model.curves[of.model.points[point].curve];
+  const double size = shape_at(patch, place_of(facing), [&](int v) { return positions.vertex<3>(surface, v); }).size;
+  const double negligible = scales.negligible(scales.of_mesh / size)[0];
+  Verdict verdict;
+  for (int k = 0; k < patch.corners; ++k) {
+    const Direction way = beyond(foot, k);
+    if (patch.across[k] == Patch::none || std::abs(way.v) > weak_margin) continue;
+    const double by = derivative.rate(way) / negligible;
+    if (by > std::max(1.0, verdict.severity)) verdict = {crosses, Choice{patch.across[k]}, by};
+  }
+  return verdict;
+}
+
+void for_each_edge_way(const Model& model, const Slots<Direction>& slots, const Vector<Direction>& displacement,
+                       const State<double>& state, double time,
+                       const std::function<void(const Direction&, double)>& f) {
+  const Vector<Direction> compact = to_compact(model, displacement);
+  const auto positions = detail::positions_at<3>(model, slots, compact, time);
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    if (state.contact.state[p] == ContactState::open || !is_along_surface(model, state, p)) continue;
+    const auto& surface = model.curves[model.points[p].curve];
+    const auto vertex = [&](int v) -> Placed<double, double, 3> {
+      const auto at = positions.vertex<3>(surface, v);
+      return {values(at.start), values(at.moved)};
+    };
+    const Facing facing = state.contact.facing[p];
+    const auto foot = foot_of(model, slots, compact, time, p, facing);
+    for (int k = 0; k < foot.patch->corners; ++k) {
+      if (foot.patch->across[k] == Patch::none) continue;
+      const auto [here, there] = places_on_edge(surface.surface, facing, k);
+      const Shape a = shape_at(*foot.patch, place_of(here), vertex),
+                  b = shape_at(surface.surface[there.patch], place_of(there), vertex);
+      if (jump_between(a, b).is_kink()) f(beyond(foot, k), a.size);
+    }
+  }
+}
+
+double edge_margin(const Model& model, const State<double>& state) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+    if (state.contact.state[p] == ContactState::open || !is_along_surface(model, state, p)) continue;
+    const Facing& facing = state.contact.facing[p];
+    const SurfacePatch& patch = model.curves[model.points[p].curve].surface[facing.patch];
+    for (int k = 0; k < patch.corners && patch.control.size() == 0; ++k)
+      if (patch.across[k] != Patch::none)
+        least = std::min(least, std::abs(beyond_edge(patch.corners, k, place_of(facing))));
+  }
+  return least;
+}
+
+}  // namespace stickslip

@@ -1,0 +1,328 @@
+/// Smooth surfaces in space: weights, continuity, the tensor products that they are on regular meshes, the search, and
+/// derivatives of a foot against the complex step.
+#include "core/contact/surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <complex>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "core/contact/surface_search.hpp"
+
+namespace stickslip::surface_test {
+namespace {
+
+struct Net {
+  Points<double> points;
+  std::vector<std::vector<int>> faces;
+};
+
+/// Quadrilaterals over [0, nx] x [0, ny] at height(x, y), each cut into two triangles where `cut(i, j)`.
+template <class Height, class Cut>
+Net sheet(int nx, int ny, Height&& height, Cut&& cut) {
+  Net net{Points<double>(3, (nx + 1) * (ny + 1)), {}};
+  const auto id = [&](int i, int j) { return j * (nx + 1) + i; };
+  for (int j = 0; j <= ny; ++j)
+    for (int i = 0; i <= nx; ++i) net.points.col(id(i, j)) << i, j, height(i, j);
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const std::array q{id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)};
+      if (!cut(i, j)) {
+        net.faces.push_back({q.begin(), q.end()});
+      } else if ((i + j) % 2 == 0) {
+        net.faces.insert(net.faces.end(), {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}});
+      } else {
+        net.faces.insert(net.faces.end(), {{q[0], q[1], q[3]}, {q[1], q[2], q[3]}});
+      }
+    }
+  return net;
+}
+
+/// A mixed sheet with nodes of 3 to 8 faces, its nodes moved at random.
+Net crumpled() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> by(-0.2, 0.2);
+  Net net = sheet(
+      6, 5, [](int, int) { return 0.0; }, [](int i, int j) { return (i * 7 + j * 5) % 3 != 0; });
+  for (Eigen::Index v = 0; v < net.points.cols(); ++v)
+    for (int k = 0; k < 3; ++k) net.points(k, v) += by(random);
+  return net;
+}
+
+struct At {
+  Vec<double, 3> y, normal;
+};
+At at(const SurfacePatch& patch, const Points<double>& points, const Vec<double, 2>& place) {
+  const PlaceWeights n = place_weights(patch, place);
+  Eigen::Matrix<double, 3, 10> y = Eigen::Matrix<double, 3, 10>::Zero();
+  for (std::size_t i = 0; i < patch.vertices.size(); ++i)
+    y += points.col(patch.vertices[i]) * n.row(static_cast<Eigen::Index>(i));
+  return {y.col(0), cross<double>(y.col(1), y.col(2)).normalized()};
+}
+
+constexpr std::array smooth_kinds{Smoothing::catmull_rom, Smoothing::b_spline};
+constexpr double no_creases = 179;
+
+TEST(Surface, WeightsSumToOneAndKeepAffineMaps) {
+  const Net net = crumpled();
+  for (const Smoothing kind : smooth_kinds)
+    for (const auto& patch : make_surface(net.faces, kind, no_creases, net.points))
+      for (const Vec<double, 2>& place : {Vec<double, 2>(0.2, 0.3), Vec<double, 2>(0, 0), Vec<double, 2>(0.6, 0)}) {
+        const auto sums = place_weights(patch, place).colwise().sum().eval();
+        EXPECT_NEAR(sums[0], 1, 1e-14);  // (rounding of some twenty products)
+        for (int k = 1; k < 6; ++k) EXPECT_NEAR(sums[k], 0, 1e-13) << k;
+      }
+}
+
+TEST(Surface, NormalsAgreeAcrossEdgesWhereverTheNodesAre) {
+  const Net net = crumpled();
+  int edges = 0;
+  for (const Smoothing kind : smooth_kinds) {
+    const auto patches = make_surface(net.faces, kind, no_creases, net.points);
+    for (const auto& patch : patches)
+      for (int k = 0; k < patch.corners; ++k) {
+        if (!patch.goes_on[k]) continue;
+        ++edges;
+        const SurfacePatch& other = patches[patch.across[k]];
+        for (const double share : {0.0, 0.13, 0.5, 0.81, 1.0}) {
+          const auto on = [&](const SurfacePatch& of, int edge, double s) -> Vec<double, 2> {
+            const Vec<double, 2> a = face_corner(of.corners, edge), b = face_corner(of.corners, edge + 1);
+            return a + s * (b - a);
+          };
+          const At here = at(patch, net.points, on(patch, k, share)),
+                   there = at(other, net.points, on(other, patch.across_edge[k], 1 - share));
+          EXPECT_LE((here.y - there.y).norm(), 1e-13);  // of the length of an edge: rounding
+          EXPECT_LE(here.normal.cross(there.normal).norm(), 1e-12);
+          EXPECT_GT(here.normal.dot(there.normal), 0);
+        }
+      }
+  }
+  EXPECT_GE(edges, 100);
+}
+
+/// Four weights of uniform cubic splines at s.
+std::array<double, 4> spline(Smoothing kind, double s) {
+  const double r = 1 - s;
+  if (kind == Smoothing::b_spline)
+    return {r * r * r / 6, (4 - 6 * s * s + 3 * s * s * s) / 6, (1 + 3 * s + 3 * s * s - 3 * s * s * s) / 6,
+            s * s * s / 6};
+  return {-s * r * r / 2, (2 - 5 * s * s + 3 * s * s * s) / 2, (s + 4 * s * s - 3 * s * s * s) / 2, -s * s * r / 2};
+}
+
+TEST(Surface, OfRegularQuadrilateralsIsATensorProduct) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> by(-0.3, 0.3);
+  Net net = sheet(
+      3, 3, [](int, int) { return 0.0; }, [](int, int) { return false; });
+  for (Eigen::Index v = 0; v < net.points.cols(); ++v)
+    for (int k = 0; k < 3; ++k) net.points(k, v) += by(random);
+  for (const Smoothing kind : smooth_kinds) {
+    const auto patch = make_surface(net.faces, kind, no_creases, net.points)[4];  // the one in the middle
+    for (const auto& [s, t] : {std::pair(0.3, 0.7), std::pair(0.0, 0.0), std::pair(0.9, 0.05)}) {
+      Vec<double, 3> expected = Vec<double, 3>::Zero();
+      const auto a = spline(kind, s), b = spline(kind, t);
+      for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) expected += a[i] * b[j] * net.points.col(4 * j + i);
+      EXPECT_LE((at(patch, net.points, {s, t}).y - expected).norm(), 1e-14) << s << t;  // rounding
+    }
+  }
+}
+
+TEST(Surface, KeepsPlanesAndSpheres) {
+  // Flat nodes: flat. On a sphere of nodes an interpolating surface errs by the second order or better.
+  std::array<double, 2> errors{};
+  for (int fine : {0, 1}) {
+    const int n = 10 << fine;
+    const auto height = [&](int i, int j) {
+      const double x = (i - n / 2.0) / n, y = (j - n / 2.0) / n;
+      return n * std::sqrt(1 - x * x - y * y);
+    };
+    const Net net = sheet(n, n, height, [](int i, int j) { return (i + 2 * j) % 3 == 0; });
+    const auto patches = make_surface(net.faces, Smoothing::catmull_rom, no_creases, net.points);
+    for (const auto& patch : patches) {
+      const At middle = at(patch, net.points, {0.3, 0.3});
+      const Vec<double, 3> from = middle.y - Vec<double, 3>(n / 2.0, n / 2.0, 0);
+      if (from.head<2>().norm() > 0.3 * n) continue;  // (near its border a sheet has one-sided normals)
+      errors[fine] = std::max(errors[fine], std::abs(from.norm() / n - 1));
+    }
+    Net flat = sheet(
+        n, n, [](int i, int j) { return 0.3 * i - 0.2 * j; }, [](int i, int) { return i % 2 == 0; });
+    for (const Smoothing kind : smooth_kinds)
+      for (const auto& patch : make_surface(flat.faces, kind, no_creases, flat.points)) {
+        const Vec<double, 3> y = at(patch, flat.points, {0.2, 0.6}).y;
+        EXPECT_NEAR(y[2], 0.3 * y[0] - 0.2 * y[1], 1e-13);  // rounding
+      }
+  }
+  EXPECT_GE(errors[0] / errors[1], 3.5);
+}
+
+TEST(Surface, HasCreasesWhereFacesTurn) {
+  const Net roof = sheet(
+      4, 4, [](int i, int) { return -std::abs(i - 2.0); }, [](int, int) { return false; });
+  int creases = 0;
+  for (const auto& patch : make_surface(roof.faces, Smoothing::catmull_rom, 30, roof.points))
+    for (int k = 0; k < 4; ++k) {
+      const bool is_crease = patch.across[k] != Patch::none && !patch.goes_on[k];
+      creases += is_crease;
+      if (is_crease) {
+        EXPECT_NEAR(at(patch, roof.points, {k == 3 ? 0.0 : 1.0, 0.4}).y[0], 2, 1e-13);
+      }
+    }
+  EXPECT_EQ(creases, 2 * 4);
+}
+
+TEST(Surface, IsSmoothAroundTheEndOfACrease) {
+  // A ridge that begins inside of a flat sheet and grows towards its border.
+  const Net ridge = sheet(
+      4, 4, [](int i, int j) { return j == 2 && i > 2 ? 0.5 * (i - 2) : 0.0; }, [](int, int) { return false; });
+  const auto patches = make_surface(ridge.faces, Smoothing::catmull_rom, 20, ridge.points);
+  int ending = 0;
+  const int end = 2 * 5 + 2;
+  std::vector<Vec<double, 3>> normals;
+  for (const auto& patch : patches)
+    for (int k = 0; k < 4; ++k) {
+      if (patch.vertices[k] == end) normals.push_back(at(patch, ridge.points, face_corner(4, k)).normal);
+      const bool is_crease = patch.across[k] != Patch::none && !patch.goes_on[k];
+      ending += is_crease && (patch.vertices[k] == end || patch.vertices[(k + 1) % 4] == end);
+    }
+  EXPECT_EQ(ending, 2);  // one edge, on both of its sides
+  ASSERT_EQ(normals.size(), 4U);
+  for (const auto& normal : normals) EXPECT_LE(normal.cross(normals[0]).norm(), 1e-13);  // rounding
+}
+
+/// Places all over a surface, 3 x places.
+Eigen::Matrix3Xd samples(const std::vector<SurfacePatch>& patches, const Points<double>& points) {
+  std::vector<Vec<double, 3>> all;
+  constexpr int n = 25;
+  for (const auto& patch : patches)
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= (patch.corners == 3 ? n - i : n); ++j)
+        all.push_back(at(patch, points, {i / double(n), j / double(n)}).y);
+  Eigen::Matrix3Xd places(3, static_cast<Eigen::Index>(all.size()));
+  for (std::size_t k = 0; k < all.size(); ++k) places.col(static_cast<Eigen::Index>(k)) = all[k];
+  return places;
+}
+
+TEST(SurfaceSearch, FindsTheNearestPlaceOfSmoothSurfaces) {
+  const auto wave = [](int i, int j) { return 0.3 * std::sin(0.9 * i) * std::cos(0.7 * j); };
+  const Net net = sheet(6, 6, wave, [](int i, int j) { return (i + j) % 3 == 0; });
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> along(0.7, 5.3), up(-0.4, 0.4);
+  for (const Smoothing kind : smooth_kinds) {
+    const auto patches = make_surface(net.faces, kind, no_creases, net.points);
+    const SurfaceSearch search(patches, net.points);
+    const Eigen::Matrix3Xd all = samples(patches, net.points);
+    for (int n = 0; n < 200; ++n) {
+      const Vec<double, 3> x(along(random), along(random), up(random));
+      const Facing found = search.facing(x, {0, 0, -1});
+      ASSERT_NE(found.patch, Patch::none);
+      const auto& patch = patches[found.patch];
+      for (int k = 0; k < patch.corners; ++k) EXPECT_LE(beyond_edge(patch.corners, k, {found.xi, found.eta}), 1e-8);
+      const At foot = at(patch, net.points, {found.xi, found.eta});
+      const Vec<double, 3> off = x - foot.y;
+      EXPECT_LE(off.cross(foot.normal).norm(), 1e-8);  // it is a foot: the search ends at 1e-10 of a patch
+      EXPECT_LE(off.norm(), (all.colwise() - x).colwise().norm().minCoeff() + 1e-9);
+    }
+  }
+}
+
+TEST(SurfaceSearch, EndsAtBordersAndPassesCreasesContinuously) {
+  const Net roof = sheet(
+      4, 4, [](int i, int) { return -std::abs(i - 2.0); }, [](int, int) { return false; });
+  for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline}) {
+    const auto patches = make_surface(roof.faces, kind, 30, roof.points);
+    const SurfaceSearch search(patches, roof.points);
+    EXPECT_EQ(search.facing({1.0, 4.2, 0.0}, {0, 0, -1}).patch, Patch::none);
+    EXPECT_NEAR(search.facing({1.0, 4.2, -1.0}, {0, 0, -1}).distance, 0.2, 1e-12);
+    double last = 0;
+    for (int n = 0; n <= 100; ++n) {  // above the ridge, across it
+      const Vec<double, 3> x(1.9 + 0.002 * n, 1.3, 0.2);
+      const Facing found = search.facing(x, {0, 0, -1});
+      ASSERT_NE(found.patch, Patch::none);
+      const At foot = at(patches[found.patch], roof.points, {found.xi, found.eta});
+      const double gap = (x - foot.y).dot(foot.normal);
+      EXPECT_NEAR(gap, (0.2 + std::abs(x[0] - 2)) / std::numbers::sqrt2, 1e-9);  // of the farther of the two planes
+      if (n > 0) {
+        EXPECT_LE(std::abs(gap - last), 0.002);
+      }
+      last = gap;
+    }
+  }
+}
+
+using Complex = std::complex<double>;
+
+TEST(Surface, ItsFootHasTheDerivativesOfTheSearch) {
+  const auto wave = [](int i, int j) { return 0.3 * std::sin(0.9 * i) * std::cos(0.7 * j); };
+  const Net net = sheet(4, 4, wave, [](int i, int j) { return (i + j) % 3 == 0; });
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline}) {
+    const auto patches = make_surface(net.faces, kind, no_creases, net.points);
+    Points<double> way(3, net.points.cols());
+    for (Eigen::Index v = 0; v < way.cols(); ++v)
+      for (int k = 0; k < 3; ++k) way(k, v) = any(random);
+    const Vec<double, 3> x(1.37, 2.21, 0.35), x_way(0.3, -0.2, 0.4);
+    const Facing facing = SurfaceSearch(patches, net.points).facing(x, {0, 0, -1});
+    ASSERT_NE(facing.patch, Patch::none);
+    constexpr double h = 1e-30;
+    const auto vertex = [&](int v) -> Placed<Complex, double, 3> {
+      return {net.points.col(v), Vec<Complex, 3>(way.col(v) * Complex(0, h))};
+    };
+    const auto foot = foot_on_patch<Complex, double>(patches[facing.patch], {0.2, 0.1}, {facing.xi, facing.eta},
+                                                     {x, Vec<Complex, 3>(x_way * Complex(0, h))}, vertex);
+    const double step = 1e-5;
+    const auto moved = [&](double by) {
+      const Points<double> there = net.points + by * way;
+      const Vec<double, 3> to = x + by * x_way;
+      const Facing found = SurfaceSearch(patches, there).foot_on(facing.patch, to);
+      const At place = at(patches[facing.patch], there, {found.xi, found.eta});
+      return std::pair((to - place.y).dot(place.normal), place.normal);
+    };
+    const auto [gap_up, normal_up] = moved(step);
+    const auto [gap_down, normal_down] = moved(-step);
+    EXPECT_NEAR(foot.gap.real(), (gap_up + gap_down) / 2, 1e-9);
+    EXPECT_NEAR(foot.gap.imag() / h, (gap_up - gap_down) / (2 * step), 1e-8);  // the difference's own error
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(foot.normal[k].imag() / h, (normal_up[k] - normal_down[k]) / (2 * step), 1e-8);
+  }
+}
+
+TEST(Surface, SmallMotionsOfAFootHaveTheirDigits) {
+  const auto wave = [](int i, int j) { return 0.3 * std::sin(0.9 * i) * std::cos(0.7 * j); };
+  const Net net = sheet(4, 4, wave, [](int, int) { return false; });
+  for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom}) {
+    const auto patches = make_surface(net.faces, kind, no_creases, net.points);
+    // From a node, which four patches share, in four directions: the motion along the surface is what it is.
+    const Vec<double, 3> node = net.points.col(12);
+    const SurfaceSearch search(patches, net.points);
+    const auto starts = patches_at(patches, search.facing(node, {0, 0, -1}));
+    ASSERT_EQ(starts.size(), 4U);
+    const auto reference = [&](int patch) -> Vec<double, 2> {
+      for (const auto& start : starts)
+        if (start.patch == patch) return {start.xi, start.eta};
+      return {0, 0};
+    };
+    const auto vertex = [&](int v) -> Placed<double, double, 3> { return {net.points.col(v), Vec<double, 3>::Zero()}; };
+    for (const double size : {1e-3, 1e-9, 1e-15})
+      for (const auto& [a, b] :
+           {std::pair(1.0, 0.6), std::pair(-1.0, 0.3), std::pair(-0.2, -1.0), std::pair(1.0, -0.4)}) {
+        const Vec<double, 3> by = size * Vec<double, 3>(a, b, 0);
+        const Facing found = search.facing(node + by, {0, 0, -1});
+        const auto foot = foot_on_patch<double, double>(patches[found.patch], reference(found.patch),
+                                                        {found.xi, found.eta}, {node, by}, vertex);
+        const SurfacePlace<double> start{&patches[starts[0].patch], reference(starts[0].patch)};
+        const Vec<double, 3> motion = surface_motion<double, double>(start, reference(starts[0].patch), foot.place,
+                                                                     reference(found.patch), true, vertex);
+        const Vec<double, 3> normal = foot.normal, expected = by - by.dot(normal) * normal;
+        // the surface turns along the way, by the second order; and rounding of the way
+        EXPECT_LE((motion - expected).norm(), (2 * size + 1e-12) * size) << size;
+      }
+  }
+}
+
+}  // namespace
+}  // namespace stickslip::surface_test
