@@ -137,7 +137,7 @@ void describe(const Study& study, const Subject& subject, Figure& figure) {
     figure.title = (subject.derivative ? "Sensitivities: error against " : "Responses: error against ") + reference;
     figure.text =
         "Discretisation error: the distance from " + reference +
-        (reference == "the finer mesh"
+        (is_against_meshes_alone(study)
              ? ", which has the same steps: mesh and method together. Where curves lie on one level, the mesh decides "
                "and "
                "a stricter method buys nothing. "

@@ -145,11 +145,17 @@ void CellRunner::run_references(const CellInput& cell) {
     if (reference.kind != Reference::Kind::overkill) continue;
     auto& values = variant_.overkill.emplace_back();
     const auto breakdown = attempt([&] {
-      const auto fine = input_of(reference_cell(cell, reference, program_version(), meshes_), meshes_);
+      const auto finer = reference_cell(cell, reference, program_version(), meshes_);
+      if (const auto known = overkill_.find(finer.id); known != overkill_.end()) {
+        values = known->second;
+        return;
+      }
+      const auto fine = input_of(finer, meshes_);
       std::shared_ptr<Condensation<double>> own;
       ++runs_;
       const auto result = run_case(problem_of(fine), fine.method, run_options(fine), own);
       if (is_converged(result.status())) values = values_of(result);
+      overkill_[finer.id] = values;
     });
     if (breakdown) note(reference, *breakdown);
   }

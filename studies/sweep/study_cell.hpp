@@ -1,6 +1,7 @@
 /// One cell of a study run and measured: cell to row.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -75,6 +76,7 @@ class CellRunner {
   const std::vector<CellInput>& cells_;
   MeshFiles& meshes_;
   Variant variant_;
+  std::map<std::string, ReferenceValues> overkill_;  ///< what variants may share, by the id of the reference's cell
   BudgetRunner budgets_;
   long runs_ = 0;
 };
