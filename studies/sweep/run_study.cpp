@@ -143,13 +143,21 @@ std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
          std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
 }
 
-/// Makes the rows those of this study in what the id of a cell does not know: where the cell stands in the study, its
-/// error budget and its certificate. What is asked for and is not there is to be measured; what is not is not shown.
-void match_extras(const Plan& plan, RowsById& rows) {
+/// Makes the rows those of this study in what the id of a cell does not know: where the cell stands in the study, what
+/// its errors are against, its error budget and its certificate. What is asked for and is not there is to be measured;
+/// what is not is not shown.
+void match_extras(const Plan& plan, RowsById& rows, std::vector<std::string>& notes) {
   const bool certifies = !plan.study.solutions.empty();
+  const std::string references = reference_hash(plan.study);
+  long others = 0;
   for (const auto& cell : plan.cells) {
     const auto row = rows.find(cell.id);
     if (row == rows.end()) continue;
+    if (row->second.value("reference_hash", references) != references) {
+      rows.erase(row);
+      ++others;
+      continue;
+    }
     row->second.erase("scene");
     row->second.update(place_of(cell));
     if (cell.peer) continue;
@@ -159,6 +167,9 @@ void match_extras(const Plan& plan, RowsById& rows) {
     if (!certifies) row->second.erase("certificate");
     if (uncertified || (plan.study.budget_copies > 0 && copies != plan.study.budget_copies)) rows.erase(row);
   }
+  if (others > 0)
+    notes.push_back(fmt::format(R"({} of another "reference" or "errors" of the study: these cells run again)",
+                                others == 1 ? "1 row is" : fmt::format("{} rows are", others)));
 }
 
 struct Tally {
@@ -360,7 +371,7 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
   std::vector<std::string> notes;
   const InterruptNote note_of_interrupt(described["command"]);
   RowsById rows = resume_rows(plan.directory, plan.ids, notes);
-  match_extras(plan, rows);
+  match_extras(plan, rows, notes);
   if (const auto others = rows_of_other_shards(plan, rows); others > 0)
     notes.push_back(
         fmt::format("{} row(s) of this study that are not of shard {} stay as they are", others, plan.shard.text()));

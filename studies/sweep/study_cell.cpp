@@ -105,6 +105,12 @@ json place_of(const CellInput& cell) {
   return place;
 }
 
+std::string reference_hash(const Study& study) {
+  json against = {{"errors", study.errors}, {"references", json::array()}};
+  for (const Reference& reference : study.references) against["references"].push_back(reference.entry);
+  return fingerprint(json_text(against));
+}
+
 std::string program_version() { return std::string(version::number) + "+" + std::string(version::git); }
 
 Input input_of(const CellInput& cell, MeshFiles& meshes) {
@@ -233,7 +239,10 @@ bool CellRunner::has_current_geometry(const CellInput& cell) const {
 
 json CellRunner::row(std::size_t index) {
   json row;
-  const auto breakdown = attempt([&] { row = measured_row(cells_[index]); });
+  const auto breakdown = attempt([&] {
+    row = measured_row(cells_[index]);
+    row["reference_hash"] = reference_hash(study_);
+  });
   if (!breakdown) return row;
   variant_ = {};  // it may be half made
   return failed_row(index, breakdown->status, breakdown->message);

@@ -22,6 +22,9 @@ std::string program_version();
 /// same cell elsewhere.
 nlohmann::json place_of(const CellInput& cell);
 
+/// 16 digits over what the errors of a study are against, and which are recorded: of these the id does not know either.
+std::string reference_hash(const Study& study);
+
 /// A valid cell as input, and its problem. pre: read_study and expand found no fault.
 Input input_of(const CellInput& cell, MeshFiles& meshes);
 /// Options of a method may hold slots of the scene, so each method has a scene of its own. Throws ModelError.
