@@ -182,8 +182,8 @@ std::tuple<std::string, std::string, std::string> gradcheck(const py::object& sc
   return {json_text(check_json(check)), check_table(check), check_faults(check)};
 }
 
-/// The directory, and how many cells have no row.
-std::tuple<Path, long> study(const StudyArguments& arguments) {
+/// The directory, how many cells have no row, and a line for each certificate that does not hold.
+std::tuple<Path, long, std::vector<std::string>> study(const StudyArguments& arguments) {
   std::ostream log(nullptr);
   const py::scoped_ostream_redirect to_python(log, py::module_::import("sys").attr("stderr"));
   Diagnostics diagnostics;
@@ -193,7 +193,7 @@ std::tuple<Path, long> study(const StudyArguments& arguments) {
     outcome = run_study(arguments, log, diagnostics, check_signals);
   }
   if (!outcome) raise_input_error(diagnostics);
-  return {outcome->directory, outcome->lost};
+  return {outcome->directory, outcome->lost, outcome->refuted};
 }
 
 /// What a study recorded, with the work and the curves that its report shows, as JSON.

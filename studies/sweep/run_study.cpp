@@ -382,12 +382,15 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
   folder.check();
   take_timings(plan.directory, listener.log, rows);
   write_rows(plan.directory, plan.ids, rows);
-  const auto recorded =
-      std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
+  std::vector<std::string> ids;  // of the shard
+  for (const auto& cell : plan.cells) ids.push_back(cell.id);
+  const auto recorded = std::ranges::count_if(ids, [&](const auto& id) { return rows.count(id) > 0; });
+  auto broken = refuted(ids, rows);
   note_disagreements(rows, listener.log);
   rows.clear();  // the report reads them again, and not all of each
   write_report(plan.directory);
-  return {plan.directory, std::ssize(plan.cells), tally.run, tally.failed, std::ssize(plan.cells) - recorded};
+  return {plan.directory, std::ssize(plan.cells),     tally.run,
+          tally.failed,   std::ssize(ids) - recorded, std::move(broken)};
 }
 
 }  // namespace

@@ -355,6 +355,16 @@ def certified(work):
     run("study", plain, "-o", directory, "--resume")
     if rows(directory) != without:
         sys.exit("certificates that are no longer asked for stay")
+    slid = json.loads((work / "peer" / "solution.json").read_text())
+    for increment in slid["increments"]:
+        increment["displacement"] = [1.01 * u for u in increment["displacement"]]
+    (work / "slid.json").write_text(json.dumps(slid))
+    with_peer.write_text(with_peer.read_text().replace("peer/solution.json", "slid.json"))
+    for command in (("study", with_peer, "-o", directory, "--resume"), ("study", with_peer, "-o", directory, "--resume"),
+                    ("merge", directory, "-o", work / "certified_merged")):
+        said = run(*command, check=False)
+        if said.returncode != 3 or "Peer: its certificate does not hold: " not in said.stderr:
+            sys.exit(f"{command}: a certificate that does not hold: exit code {said.returncode}\n{said.stderr}")
     print("certified: with a solution of another program, and without again", flush=True)
 
 

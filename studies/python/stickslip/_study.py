@@ -42,10 +42,12 @@ def study(study: Path, folder: Union[Path, None] = None, resume: bool = False, r
     if not 1 <= processes <= MOST_JOBS:
         _arguments.refuse(f"jobs is {processes}; must be 1 to {MOST_JOBS}")
     part = _arguments.text(shard, "shard", 'str, as "1/4"')
-    directory, lost = _stickslip.study(file, target, resume, restart, part, processes)
+    directory, lost, refuted = _stickslip.study(file, target, resume, restart, part, processes)
     if lost:
         warnings.warn(f"{lost} cells have no row: their processes were ended from outside; resume=True runs them again",
                       RuntimeWarning, stacklevel=2)
+    for line in refuted:
+        warnings.warn(line, RuntimeWarning, stacklevel=2)
     return load_study(directory)
 
 
