@@ -213,6 +213,7 @@ std::string study_cells(const Path& folder) {
                      {"along", running && running->value ? json(*running->value) : json(nullptr)},
                      {"converged", cell.converged},
                      {"knobs", std::move(knobs)},
+                     {"r", report::ratio_of(study.ratio, cell)},
                      {"work", cell.work},
                      {"sensitivity_work", cell.sensitivity_work},
                      {"seconds", cell.seconds},

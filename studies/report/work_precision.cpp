@@ -91,8 +91,11 @@ json rows_of(const Study& study, const Subject& subject, SeriesList& series) {
       r["scene"] = cell.variant;
       r["quantity"] = subject.is_of_state() ? in_plain_words(quantity) : quantity;
       r["error"] = error;
+      const Counts counts = counts_of(cell, derivative ? Of::sensitivities : Of::responses);
+      r["factorizations"] = counts.factorizations;
+      r["backsolves"] = counts.backsolves;
+      r["r"] = ratio_of(study.ratio, cell);
       r["work"] = derivative ? cell.sensitivity_work : cell.work;
-      r["backsolves"] = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
       r["seconds"] = derivative ? cell.sensitivity_seconds : cell.seconds;
       const Knob* value = find_knob(cell, knob);
       if (const double median = derivative ? cell.median_sensitivity_seconds : cell.median_seconds; median > 0)

@@ -103,6 +103,8 @@ class Studies(InFolder):
             self.assertAlmostEqual(row["discretization:sensitivity:press/F"], abs(slope - 1), delta=1e-11)
             self.assertGreater(row["factorizations"], 0)
             self.assertGreaterEqual(row["sensitivity_work"], row["work"])
+            self.assertAlmostEqual(row["work"], row["factorizations"] - row.get("sensitivity_factorizations", 0)
+                                   + row["r"] * row["backsolves"])
             self.assertLess(row["kkt:equilibrium"], 1e-10)
         self.assertEqual({row.get("stiffness") for row in rows if row["method"] == "penalty"}, set(STIFFNESSES))
 

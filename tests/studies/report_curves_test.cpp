@@ -108,6 +108,18 @@ TEST_F(ReportCurves, JoinsOneCurveAMethodAlongItsSweptKnob) {
   EXPECT_EQ(shapes.size(), 3u);  // apart in grey too
 }
 
+TEST_F(ReportCurves, RowsHoldWhatTheirWorkIsMadeOf) {
+  record(description(), three_methods());
+  for (const Of of : {Of::responses, Of::sensitivities}) {
+    const auto figure = report::work_precision(study(), Against::same_mesh, of);
+    for (const json& row : figure->rows) {
+      const double counts = row["factorizations"], weighed = row["backsolves"], r = row["r"];
+      EXPECT_NEAR(r, 0.1, 1e-15);
+      EXPECT_DOUBLE_EQ(row["work"], counts + r * weighed);
+    }
+  }
+}
+
 TEST_F(ReportCurves, KeepsOtherKnobsApartAsCurvesOfTheirOwn) {
   std::vector<json> cells;
   for (const double scale : {1, 10})
