@@ -238,7 +238,7 @@ int run_command(const RunArguments& arguments) {
   std::vector<std::string> written;
   const json document =
       writes ? write_run(directory, arguments, *loaded, result, arguments.trace ? &trace : nullptr, written)
-             : result_json(result, canonical_text(loaded->input));
+             : result_json(*loaded, result);
   if (!arguments.export_to.empty() && !result.trajectory.increments.empty())
     add_files(arguments.export_to, export_system(arguments.export_to, result), written);
   if (arguments.json) {

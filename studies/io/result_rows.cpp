@@ -82,7 +82,7 @@ std::string row_fault(const json& row) {
 }
 
 [[noreturn]] void throw_damaged(const Diagnostics& diagnostics) {
-  throw InputFault(diagnostics.text() + "delete the file, and run the study again with --resume");
+  throw InputFault(diagnostics.text() + "delete the file, and resume the study");
 }
 
 /// Reports what in study.json is of another kind than the program writes.

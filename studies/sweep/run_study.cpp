@@ -87,10 +87,11 @@ std::optional<Plan> make_plan(const StudyArguments& arguments, MeshFiles& meshes
   if (const auto shard = parse_shard(arguments.shard))
     plan.shard = *shard;
   else
-    diagnostics.error({{"--shard " + arguments.shard}, "", "must be i/N, whole numbers with 1 <= i <= N"});
+    diagnostics.error(
+        {{diagnostics.caller().shard + arguments.shard}, "", "must be i/N, whole numbers with 1 <= i <= N"});
   constexpr int most_jobs = 1024;  // beyond, a system runs out of processes
   if (arguments.jobs < 1 || arguments.jobs > most_jobs)
-    diagnostics.error({{"--jobs " + std::to_string(arguments.jobs)}, "", "must be 1 to 1024"});
+    diagnostics.error({{diagnostics.caller().jobs + std::to_string(arguments.jobs)}, "", "must be 1 to 1024"});
   auto study = read_study(arguments.study, diagnostics);
   if (!study) return std::nullopt;
   plan.study = *std::move(study);
@@ -353,16 +354,17 @@ void note_disagreements(const RowsById& rows, std::ostream& log) {
   for (const auto& sentence : disagreements(all)) log << "note: " << printable(sentence) << '\n';
 }
 
-StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const Listener& listener, MeshFiles& meshes) {
+StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const Listener& listener, MeshFiles& meshes,
+                       const Caller& caller) {
+  const std::string elsewhere = caller.directory + " writes to another directory";
   if (holds(plan.directory, "result.json"))
-    throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
+    throw InputFault(plan.directory.string() + ": holds the result of a run; " + elsewhere);
   const OutputFolder folder(plan.directory, study_files());
   if (!arguments.restart) check_records(plan.directory);
   if (const auto found = read_rows(plan.directory).rows.size(); found > 0 && !arguments.resume && !arguments.restart)
-    throw InputFault(
-        fmt::format("{}: holds {} finished cells; --resume keeps those of this study and runs what is "
-                    "missing, --restart deletes them, -o DIR writes to another directory",
-                    plan.directory.string(), found));
+    throw InputFault(fmt::format(
+        "{}: holds {} finished cells; {} keeps those of this study and runs what is missing, {} deletes them, {}",
+        plan.directory.string(), found, caller.resume, caller.restart, elsewhere));
   if (arguments.restart)
     remove_outputs(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json"});
   json described = description(plan, arguments, meshes);
@@ -409,7 +411,7 @@ std::optional<StudyOutcome> run_study(const StudyArguments& arguments, std::ostr
   const auto plan = make_plan(arguments, meshes, diagnostics);
   if (!plan) return std::nullopt;
   log << diagnostics.notes_text();
-  return carry_out(*plan, arguments, {log, on_run}, meshes);
+  return carry_out(*plan, arguments, {log, on_run}, meshes, diagnostics.caller());
 }
 
 }  // namespace stickslip
