@@ -323,6 +323,8 @@ TEST_F(ReportCurves, ShowsTheHistoryOfTheHardestStep) {
   for (const auto& row : figure->rows) ++iterations[row["label"]];
   EXPECT_EQ(iterations.at("Penalty stiffness=1000"), 5);
   EXPECT_EQ(iterations.at("Penalty stiffness=1e5"), 3);
+  EXPECT_THAT(figure->text, HasSubstr("They are step 1, t = 1 ("));
+  EXPECT_THAT(figure->text, HasSubstr("; step 2, t = 5 (1 run); step 3, t = 3 (1 run)."));
 }
 
 /// Meshes that are varied are a series by their unknowns; what varies beside them is chosen.
