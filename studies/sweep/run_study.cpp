@@ -78,7 +78,10 @@ void check_solutions(const Study& study, const std::vector<CellInput>& cells, Me
         certificate_of_peer(solution_frame(*problem_of(input), input.document), cell.peer->solution);
       } catch (const InputFault& fault) {
         const std::string pointer = cell.peer->place.pointer + "/file";
-        diagnostics.error({study.document.place(pointer), pointer, fault.what()});
+        const auto* const located = dynamic_cast<const SolutionFault*>(&fault);
+        const fs::path file = (fs::path(study.document.file()).parent_path() / cell.peer->file).lexically_normal();
+        diagnostics.error({study.document.place(pointer), pointer,
+                           located ? in_file(file, *located) : file.string() + ": " + fault.what()});
       }
 }
 
