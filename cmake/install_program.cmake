@@ -7,6 +7,8 @@ install(FILES LICENSE README.md CITATION.cff DESTINATION "${CMAKE_INSTALL_DOCDIR
 install(FILES LICENSE RENAME copyright DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 # (of the charts in the report)
 install(FILES third_party/vega/THIRD_PARTY_NOTICES DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+# (the theory, which the pages refer to)
+install(FILES core/README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}/core" COMPONENT program)
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program PATTERN "manual.txt" EXCLUDE)
 install(DIRECTORY studies/scenes studies/meshes DESTINATION "${CMAKE_INSTALL_DATADIR}/stickslip" COMPONENT program)
 # (the page for learners, if play.sh has built it: reports link to it)

@@ -238,7 +238,7 @@ int run_command(const RunArguments& arguments) {
   std::vector<std::string> written;
   const json document =
       writes ? write_run(directory, arguments, *loaded, result, arguments.trace ? &trace : nullptr, written)
-             : result_json(result, canonical_text(loaded->input));
+             : result_json(*loaded, result);
   if (!arguments.export_to.empty() && !result.trajectory.increments.empty())
     add_files(arguments.export_to, export_system(arguments.export_to, result), written);
   if (arguments.json) {
@@ -300,12 +300,13 @@ int study_command(const StudyArguments& arguments) {
   }
   say(std::cout, "{} cells, {} run now, {} of these without a converged result (kept as rows)\nreport: {}\n",
       study->cells, study->run, study->failed, printable((study->directory / "report.html").string()));
-  if (study->lost == 0) return done;
-  say(std::cerr,
-      "{} cells have no row: their processes were ended from outside, by the system where memory runs out; "
-      "--resume runs them again, fewer --jobs need less memory at once\n",
-      study->lost);
-  return not_solved;
+  for (const auto& line : study->refuted) say(std::cerr, "{}\n", printable(line));
+  if (study->lost > 0)
+    say(std::cerr,
+        "{} cells have no row: their processes were ended from outside, by the system where memory runs out; "
+        "--resume runs them again, fewer --jobs need less memory at once\n",
+        study->lost);
+  return study->lost == 0 && study->refuted.empty() ? done : not_solved;
 }
 
 int methods_command(bool as_json) {

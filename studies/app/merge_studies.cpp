@@ -156,15 +156,17 @@ int join(const std::vector<Part>& parts, const fs::path& output) {
   write_output(output / "study.json", json_text(merged_description(parts, output.string()), 2) + "\n");
   write_rows(output, ids, rows);
   const std::size_t joined = rows.size();
+  const auto broken = refuted(ids, rows);
   rows.clear();  // the report reads them again, and not all of each
   write_report(output);
   say(std::cout,
       "{} of {} cells from {} directories, {} of these without a converged result (kept as rows), {} double\n", joined,
       ids.size(), parts.size(), failed, doubles);
   say(std::cout, "report: {}\n", printable((output / "report.html").string()));
-  if (missing.empty()) return done;
-  say(std::cerr, "{} cells are still missing, in the study's order: {}\n", missing.size(), places(missing));
-  return not_solved;
+  for (const auto& line : broken) say(std::cerr, "{}\n", printable(line));
+  if (!missing.empty())
+    say(std::cerr, "{} cells are still missing, in the study's order: {}\n", missing.size(), places(missing));
+  return missing.empty() && broken.empty() ? done : not_solved;
 }
 
 }  // namespace

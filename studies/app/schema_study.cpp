@@ -32,10 +32,13 @@ const char* const study = R"json({
       "method": {"description": "that method on the same mesh: the enforcement error", "$ref": "#/$defs/method",
         "examples": [{"monolithic_al": {}}]},
       "overkill": {"description": "monolithic_al on a finer mesh, with the same steps: like the next two the discretisation error",
-        "type": "object", "examples": [{"refine": 2}], "required": ["refine"], "additionalProperties": false,
-        "properties": {
-        "refine": {"description": "levels finer than the cell, up to 10", "title": "whole number >= 1",
-          "type": "integer", "minimum": 1, "maximum": 10, "examples": [2]}}},
+        "type": "object", "examples": [{"refine": 2}], "additionalProperties": false,
+        "anyOf": [{"required": ["refine"]}, {"required": ["vary"]}], "properties": {
+        "refine": {"description": "levels finer than the cell or, with vary, than the meshes named there; up to 10",
+          "title": "whole number >= 1", "type": "integer", "minimum": 1, "maximum": 10, "examples": [2]},
+        "vary": {"description": "meshes of one reference for all cells: values below /bodies/NAME/mesh",
+          "title": "{pointer: value, ...}", "type": "object", "minProperties": 1,
+          "examples": [{"/bodies/foot/mesh/gmsh": "fine.msh"}]}}},
       "analytic": {"description": "a closed form, derivatives included; with map", "examples": ["belt"]},
       "map": {"description": "of analytic: an input that a response measures, an output that is held against it",
         "title": "{RESPONSE: QUANTITY, ...}", "type": "object", "additionalProperties": {"type": "string"},

@@ -96,7 +96,7 @@ void select_method(JsonDocument& document, const std::optional<std::string>& nam
                    MeshFiles& mesh_files) {
   if (!name || !document.root().is_object()) return;
   if (!default_method(*name)) {
-    diagnostics.error({{"-m " + *name},
+    diagnostics.error({{diagnostics.caller().method + *name},
                        "",
                        "there is no method " + in_quotes(*name) + ";" + suggestion(*name, method_names()) +
                            " allowed: " + listed(method_names())});
@@ -106,18 +106,18 @@ void select_method(JsonDocument& document, const std::optional<std::string>& nam
   if (own && own->value().is_object() && own->find(*name)) return;
   SceneReading apart(diagnostics, std::filesystem::path(document.file()).parent_path(), mesh_files);
   if (own) read_method(*own, apart);
-  document.set("/method", {{*name, nlohmann::json::object()}}, {"-m " + *name});
+  document.set("/method", {{*name, nlohmann::json::object()}}, {diagnostics.caller().method + *name});
 }
 
-/// What an assignment to an option of a method lacks, -m or the name of the method; "" of all others.
-std::string fault_of_option(const nlohmann::json& scene, const std::string& pointer) {
+/// What an assignment to an option of a method lacks, that this is the method to run or its name; "" of all others.
+std::string fault_of_option(const nlohmann::json& scene, const std::string& pointer, const Caller& caller) {
   const std::string within = "/method/";
   const nlohmann::json* own = value_at(scene, "/method");
   if (!own || !own->is_object() || own->size() != 1 || !pointer.starts_with(within)) return "";
   const std::string method = own->begin().key(), rest = pointer.substr(within.size()),
                     name = rest.substr(0, rest.find('/'));
   if (own->contains(name)) return "";
-  if (default_method(name)) return "the scene runs " + method + "; add -m " + name;
+  if (default_method(name)) return "the scene runs " + method + "; add " + caller.method + name;
   const auto known = default_method(method);
   return known && to_json(*known).at(method).contains(name)
              ? "names no method; did you mean " + in_quotes(within + method + "/" + rest) + "?"
@@ -208,11 +208,12 @@ std::optional<Input> read_scene(JsonDocument document, const Overrides& override
   MeshFiles mesh_files;
   if (method_name && default_method(*method_name)) select_method(document, method_name, diagnostics, mesh_files);
   for (const std::string& assignment : overrides)
-    if (const std::string fault = fault_of_option(document.root(), assignment.substr(0, assignment.find('=')));
+    if (const std::string fault =
+            fault_of_option(document.root(), assignment.substr(0, assignment.find('=')), diagnostics.caller());
         fault.empty())
       document.override_value(assignment, diagnostics);
     else
-      diagnostics.error({{"--set " + assignment}, "", fault});
+      diagnostics.error({{diagnostics.caller().set + assignment}, "", fault});
   auto input = read_scene(document, method_name, diagnostics, mesh_files);
   return diagnostics.has_errors() ? std::nullopt : std::move(input);
 }

@@ -10,6 +10,8 @@
 #include <unordered_set>
 #include <vector>
 
+#include "studies/io/caller.hpp"
+
 namespace stickslip {
 
 /// Where a value was given: a place in a file, or an override (which has no lines).
@@ -32,6 +34,10 @@ struct Diagnostic {
 /// Faults, which make the input invalid, and notes, which do not.
 class Diagnostics {
  public:
+  Diagnostics() = default;
+  /// `caller`: who reads them.
+  explicit Diagnostics(const Caller& caller) : caller_(&caller) {}
+  const Caller& caller() const { return *caller_; }
   /// A fault that is there already, in the same words, is not added again.
   void error(Diagnostic);
   void note(Diagnostic);
@@ -48,6 +54,7 @@ class Diagnostics {
   std::string notes_text() const;
 
  private:
+  const Caller* caller_ = &command_line;
   std::vector<Diagnostic> errors_, notes_;
   std::unordered_set<std::string> texts_;  ///< of errors_
   std::set<std::string> pointers_;         ///< of errors_

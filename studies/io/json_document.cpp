@@ -394,7 +394,7 @@ void JsonDocument::remove(const std::string& pointer) {
 }
 
 void JsonDocument::override_value(const std::string& assignment, Diagnostics& diagnostics) {
-  const Place origin{"--set " + assignment, 0, 0};
+  const Place origin{diagnostics.caller().set + assignment, 0, 0};
   if (!is_utf8(assignment)) return diagnostics.error({origin, "", "is not UTF-8"});
   const auto equals = assignment.find('=');
   auto fault = [&](const std::string& message) { diagnostics.error({origin, "", message}); };

@@ -82,7 +82,7 @@ std::string row_fault(const json& row) {
 }
 
 [[noreturn]] void throw_damaged(const Diagnostics& diagnostics) {
-  throw InputFault(diagnostics.text() + "delete the file, and run the study again with --resume");
+  throw InputFault(diagnostics.text() + "delete the file, and resume the study");
 }
 
 /// Reports what in study.json is of another kind than the program writes.
@@ -260,5 +260,25 @@ std::string variant_text(const json& row) {
 }
 
 bool converged(const json& row) { return row.value("status", "").starts_with("converged"); }
+
+std::string broken_law(const json& certificate) {
+  return fmt::format("{} at t = {:.9g}, {}", certificate["law"].get<std::string>(), certificate["time"].get<double>(),
+                     certificate["where"].get<std::string>());
+}
+
+std::vector<std::string> refuted(const std::vector<std::string>& ids, const RowsById& rows) {
+  std::vector<std::string> lines;
+  for (const std::string& id : ids) {
+    const auto found = rows.find(id);
+    if (found == rows.end()) continue;
+    const json& row = found->second;
+    const json certificate = row.value("certificate", json::object());
+    if (certificate.value("holds", true) || !(row.contains("peer") || converged(row))) continue;
+    const std::string variant = variant_text(row);
+    lines.push_back(fmt::format("{}{}: its certificate does not hold: {}", row.value("label", ""),
+                                variant.empty() ? "" : ", " + variant, broken_law(certificate)));
+  }
+  return lines;
+}
 
 }  // namespace stickslip

@@ -76,4 +76,11 @@ std::string variant_text(const nlohmann::json& row);
 /// Whether a row's status is converged, or converged_at_roundoff.
 bool converged(const nlohmann::json& row);
 
+/// Which law a row's certificate says is broken, when and where.
+std::string broken_law(const nlohmann::json& certificate);
+
+/// Of the rows of `ids` those whose certificate does not hold, a line each that says why. Of a run without a converged
+/// result its status says it.
+std::vector<std::string> refuted(const std::vector<std::string>& ids, const RowsById& rows);
+
 }  // namespace stickslip

@@ -35,7 +35,7 @@ py::dict sensitivities(const py::object& owner, const RunResult& run) {
   py::dict out;
   for (std::size_t i = 0; i < scene.responses.size(); ++i) {
     py::dict of;
-    for (const int j : run.order) {
+    for (const int j : run.simulation.order) {
       const auto column = run.sensitivities[i].col(j);
       of[py::str(scene.parameters[j].name)] = view(owner, column.data(), {column.size()});
     }
@@ -71,7 +71,7 @@ py::list displacements(const py::object& owner, const RunResult& run) {
 py::dict parameters(const RunResult& run) {
   const auto& all = run.simulation.problem->model.scene.parameters;
   py::dict out;
-  for (const int j : run.order) out[py::str(all[j].name)] = all[j].value;
+  for (const int j : run.simulation.order) out[py::str(all[j].name)] = all[j].value;
   return out;
 }
 
@@ -80,7 +80,7 @@ py::dict displacement_derivatives(const py::object& owner, const RunResult& run)
   const auto& model = run.simulation.problem->model;
   const auto& derivatives = run.result.gradients.last_displacement;
   py::dict out;
-  for (const int j : run.order)
+  for (const int j : run.simulation.order)
     if (j < derivatives.cols())
       out[py::str(model.scene.parameters[j].name)] =
           view(owner, derivatives.col(j).data(), {model.node_count, model.dimension});

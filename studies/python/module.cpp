@@ -5,9 +5,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <system_error>
 
 #include "core/algebra/linear_solver.hpp"
@@ -41,22 +39,11 @@ void set_input_error(const std::vector<std::string>& faults, const std::string& 
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
-/// A fault that speaks of options of the command, with the names that Python's arguments have.
-std::string in_python(std::string text) {
-  for (const auto& [option, argument] : {std::pair{"--set ", "set "}, {"-m ", "method "}})
-    if (text.starts_with(option)) text.replace(0, std::string_view(option).size(), argument);
-  for (const auto& [option, argument] :
-       {std::pair{"--resume", "resume=True"}, {"--restart", "restart=True"}, {"-o DIR", "folder=DIR"}})
-    if (const auto at = text.find(option); at != std::string::npos)
-      text.replace(at, std::string_view(option).size(), argument);
-  return text;
-}
-
 [[noreturn]] void raise_input_error(const Diagnostics& diagnostics) {
   std::vector<std::string> faults;
   std::string text;
   for (const auto& fault : diagnostics.errors()) {
-    faults.push_back(in_python(fault.text()));
+    faults.push_back(fault.text());
     text += (text.empty() ? "" : "\n") + faults.back();
   }
   set_input_error(faults, text);
@@ -68,7 +55,7 @@ void translate_exception(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
   } catch (const InputFault& fault) {
-    const std::string text = in_python(printable_lines(fault.what()));
+    const std::string text = printable_lines(fault.what());
     set_input_error({text}, text);
   } catch (const std::system_error& error) {
     PyErr_SetString(PyExc_OSError, error.what());
@@ -88,9 +75,9 @@ std::string json_text_of(const py::handle& value) {
   return py::module_::import("json").attr("dumps")(value).cast<std::string>();
 }
 
+/// A scene as it is written, and as its faults name it: of a dict without the lines of a text that nobody sees.
 struct Given {
-  JsonDocument document;
-  std::vector<std::string> parameters;  ///< names in their order
+  JsonDocument written, named;
 };
 
 /// The scene as a document: a dict, or the file of a name.
@@ -99,68 +86,43 @@ std::optional<Given> document_of(const py::object& scene, Diagnostics& diagnosti
   auto document = is_dict ? JsonDocument::parse(json_text_of(scene), "scene", diagnostics)
                           : JsonDocument::read(scene.cast<std::string>(), diagnostics);
   if (!document) return std::nullopt;
-  std::vector<std::tuple<int, int, std::string>> places;
-  if (const json* named = value_at(document->root(), "/parameters"); named && named->is_object())
-    for (const auto& [name, unused] : named->items()) {
-      const Place place = document->key_place(child_pointer("/parameters", name));
-      places.emplace_back(place.line, place.column, name);
-    }
-  std::sort(places.begin(), places.end());
-  std::vector<std::string> names;
-  for (auto& [line, column, name] : places) names.push_back(std::move(name));
-  if (is_dict) document = JsonDocument::of(document->root(), "scene");  // without the lines of a text that nobody sees
-  return Given{*std::move(document), std::move(names)};
-}
-
-/// Indices of the parameters in the order of the names; those that have none, as they were set, are the last. A node of
-/// a shape NAME is NAME/0, NAME/1, ...
-std::vector<int> in_order(const std::vector<Parameter>& parameters, const std::vector<std::string>& names) {
-  const auto rank = [&](int j) {
-    const std::string& name = parameters[j].name;
-    const auto found = std::find(names.begin(), names.end(), name);
-    return found != names.end() ? found : std::find(names.begin(), names.end(), name.substr(0, name.rfind('/')));
-  };
-  std::vector<int> order(parameters.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return rank(i) < rank(j); });
-  return order;
+  auto named = is_dict ? JsonDocument::of(document->root(), "scene") : *document;
+  return Given{*std::move(document), std::move(named)};
 }
 
 struct Loaded {
   Simulation simulation;
-  std::string name;        ///< of the file, or "scene"
-  std::vector<int> order;  ///< of the parameters
+  std::string name;  ///< of the file, or "scene"
   std::vector<std::string> notes;
 };
 
 Loaded load(const py::object& scene, const Text& method, const py::dict& set) {
-  Diagnostics diagnostics;
+  Diagnostics diagnostics(python_arguments);
   Overrides overrides;
   for (const auto& [pointer, value] : set) overrides.push_back(pointer.cast<std::string>() + "=" + json_text_of(value));
   const auto given = document_of(scene, diagnostics);
-  auto simulation = given ? prepare(given->document, overrides, method, diagnostics) : std::nullopt;
+  auto simulation = given ? prepare(given->named, overrides, method, diagnostics) : std::nullopt;
   if (!simulation) raise_input_error(diagnostics);
+  simulation->order = order_of(simulation->problem->model.scene.parameters, given->written);
   std::vector<std::string> notes;
   for (const auto& note : diagnostics.notes()) notes.push_back(note.text());
-  auto order = in_order(simulation->problem->model.scene.parameters, given->parameters);
-  return {*std::move(simulation), given->document.file(), std::move(order), std::move(notes)};
+  return {*std::move(simulation), given->named.file(), std::move(notes)};
 }
 
 // ---- what the package calls -----------------------------------------------------------------------------------------
 
 py::dict run(const py::object& scene, const Text& method, const py::dict& set, const std::optional<Path>& folder) {
-  auto [simulation, name, order, notes] = load(scene, method, set);
+  auto [simulation, name, notes] = load(scene, method, set);
   std::string document;
   RunResult run;
   {
     const py::gil_scoped_release unlocked;
     std::optional<OutputFolder> held;
-    if (folder) held = folder_of_run(*folder);
+    if (folder) held = folder_of_run(*folder, {}, python_arguments);
     auto result = simulate(simulation, check_signals);
     if (folder) remove_run(*folder);
-    document = json_text(folder ? write_result(*folder, simulation, result)
-                                : result_json(result, canonical_text(simulation.input)));
-    run = gather(std::move(simulation), std::move(result), std::move(order));
+    document = json_text(folder ? write_result(*folder, simulation, result) : result_json(simulation, result));
+    run = gather(std::move(simulation), std::move(result));
   }
   py::dict out = arrays_of(py::cast(std::move(run)));
   out["notes"] = notes;
@@ -182,18 +144,18 @@ std::tuple<std::string, std::string, std::string> gradcheck(const py::object& sc
   return {json_text(check_json(check)), check_table(check), check_faults(check)};
 }
 
-/// The directory, and how many cells have no row.
-std::tuple<Path, long> study(const StudyArguments& arguments) {
+/// The directory, how many cells have no row, and a line for each certificate that does not hold.
+std::tuple<Path, long, std::vector<std::string>> study(const StudyArguments& arguments) {
   std::ostream log(nullptr);
   const py::scoped_ostream_redirect to_python(log, py::module_::import("sys").attr("stderr"));
-  Diagnostics diagnostics;
+  Diagnostics diagnostics(python_arguments);
   std::optional<StudyOutcome> outcome;
   {
     const py::gil_scoped_release unlocked;
     outcome = run_study(arguments, log, diagnostics, check_signals);
   }
   if (!outcome) raise_input_error(diagnostics);
-  return {outcome->directory, outcome->lost};
+  return {outcome->directory, outcome->lost, outcome->refuted};
 }
 
 /// What a study recorded, with the work and the curves that its report shows, as JSON.
@@ -213,6 +175,7 @@ std::string study_cells(const Path& folder) {
                      {"along", running && running->value ? json(*running->value) : json(nullptr)},
                      {"converged", cell.converged},
                      {"knobs", std::move(knobs)},
+                     {"r", report::ratio_of(study.ratio, cell)},
                      {"work", cell.work},
                      {"sensitivity_work", cell.sensitivity_work},
                      {"seconds", cell.seconds},

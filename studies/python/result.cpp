@@ -65,8 +65,8 @@ ContactTable contact_table(const Problem& problem, const State<double>& state, i
 
 }  // namespace
 
-RunResult gather(Simulation simulation, CaseResult result, std::vector<int> order) {
-  RunResult run{std::move(simulation), std::move(result), {}, {}, {}, {}, {}, std::move(order)};
+RunResult gather(Simulation simulation, CaseResult result) {
+  RunResult run{std::move(simulation), std::move(result), {}, {}, {}, {}, {}};
   gather_series(run);
   const auto& model = run.simulation.problem->model;
   for (const auto& step : run.result.steps) {

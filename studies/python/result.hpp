@@ -38,10 +38,9 @@ struct RunResult {
   std::vector<Matrix<double>> sensitivities;  ///< per response: steps x parameters; not a number where none is known
   std::vector<std::vector<ContactTable>> contacts;  ///< per step and contact
   std::vector<ElementTable> elements;               ///< per body
-  std::vector<int> order;                           ///< of the parameters, as the scene names them
 };
 
 /// Gathers the arrays of a result.
-RunResult gather(Simulation simulation, CaseResult result, std::vector<int> order);
+RunResult gather(Simulation simulation, CaseResult result);
 
 }  // namespace stickslip

@@ -106,7 +106,8 @@ std::optional<Figure> derivative_histories(const Study& study, const std::string
                     : "Of every step. Where a point begins to slip, to stick or to open, a derivative has a kink or a "
                       "jump, and what friction remembers goes on in it.";
   if (has_sides)
-    figure.text += " Where it has two sides the curve ends, and a point stands for each side that has a derivative.";
+    figure.text +=
+        " If its values from below and from above differ at a step, the curve has a gap there, and each value a point.";
   offer(figure, "Derivative", "response", first_to_show(told, rounding, response), "time");
   const auto kept = distinct(figure.rows, "response", "time").size();
   if (kept < derivatives) figure.text += fmt::format(" The first {} of {} derivatives.", kept, derivatives);

@@ -138,14 +138,14 @@ std::vector<std::string> parameters_of(const json& record) {
   return names;
 }
 
-/// "0.03 below, 0.2 above".
+/// By what a parameter may change: "-0.03 or +0.2".
 std::string ways_in_words(const json& sides) {
   if (!sides.is_array() || sides.size() != 2) return "";
-  if (way_of(sides[0]) == 0 && way_of(sides[1]) == 0) return "at a change";
+  if (way_of(sides[0]) == 0 && way_of(sides[1]) == 0) return "0, at a change";
   std::string out;
-  for (const auto& [way, side] : {std::pair(way_of(sides[0]), "below"), std::pair(way_of(sides[1]), "above")})
-    if (way < no_way) out += (out.empty() ? "" : ", ") + number(way) + " " + side;
-  return out.empty() ? "none" : out;
+  for (const auto& [way, sign] : {std::pair(way_of(sides[0]), "-"), std::pair(way_of(sides[1]), "+")})
+    if (way < no_way) out += (out.empty() ? "" : " or ") + (sign + number(way));
+  return out.empty() ? "any amount" : out;
 }
 
 }  // namespace
@@ -164,9 +164,9 @@ std::optional<Plate> map_of_changes(const Study& run) {
   const std::string title = "How far the nearest change of a branch is";
   std::string text =
       "Steps to the right, parameters downwards: by what share of its value a parameter may change before some point "
-      "opens, closes, slips, sticks, yields or passes to another facet, to first order. Where a derivative has two "
-      "sides, "
-      "neither is drawn as a point of a curve.";
+      "opens, closes, slips, sticks, yields or passes to another facet, to first order. At a step with \"two sides\" "
+      "the "
+      "derivatives from below and from above differ.";
   if (all > most) text += fmt::format(" The first {} of {} parameters.", most, all);
   const double bottom = MapLayout::top + MapLayout::row * static_cast<double>(parameters.size() + 1) + 24;
   Plate plate{"nearest-change", title, text, Drawing(MapLayout::width, bottom + 38, title, text), {}};
@@ -190,17 +190,17 @@ std::string table_of_margins(const Study& run) {
   const auto parameters = parameters_of(record);
   if (parameters.empty()) return "";
   Table table;
-  table.header = {"time", "derivatives", "open", "slip", "yield", "vertex"};
+  table.header = {"time", "derivatives have", "open", "slip", "yield", "vertex"};
   constexpr std::size_t most_apart = 20;  // columns that a table has room for
   const std::size_t shown = std::min(parameters.size(), most_apart);
-  for (std::size_t j = 0; j < shown; ++j) table.header.push_back("by " + parameters[j]);
+  for (std::size_t j = 0; j < shown; ++j) table.header.push_back(parameters[j] + " may change by");
   constexpr std::size_t most = 1000;
   const std::size_t stride = std::max<std::size_t>((steps.size() + most - 1) / most, 1);
   for (std::size_t n = 0; n < steps.size(); ++n) {
     const json& step = steps[n];
     if ((steps.size() - 1 - n) % stride != 0 || !step.contains("differentiable")) continue;
     const bool one = at(step, "differentiable") == true;
-    std::vector<std::string> row = {number(number_at(step, "time"), 6), one ? "one" : "two sides"};
+    std::vector<std::string> row = {number(number_at(step, "time"), 6), one ? "one value" : "two sides"};
     for (const char* margin : {"open", "slip", "yield", "vertex"})
       row.push_back(plain(at(at(step, "margins"), margin)));
     for (std::size_t j = 0; j < shown; ++j) row.push_back(ways_in_words(at(at(step, "nearest_change"), parameters[j])));
@@ -208,9 +208,10 @@ std::string table_of_margins(const Study& run) {
     table.row_classes.emplace_back(one ? "" : "failed");
   }
   if (table.rows.empty()) return "";
-  return compact_html(table,
-                      "Margins of every step, dimensionless, and the way to the nearest change in units of each "
-                      "parameter");
+  return compact_html(
+      table,
+      "Margins of every step, dimensionless, and by what each parameter may change, in its units, before "
+      "a point changes its branch");
 }
 
 }  // namespace stickslip::report

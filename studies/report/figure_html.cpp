@@ -111,13 +111,11 @@ json axis_json(const Quantity& quantity) {
 
 /// What page.js draws a chart from.
 json chart_json(const Figure& figure, const Chart& chart) {
-  json out = {{"description", figure.title + (chart.title.empty() ? "" : ", " + chart.title)},
-              {"x", axis_json(chart.x)},
-              {"y", axis_json(chart.y)},
-              {"tips", chart.tooltip},
-              {"only", chart.only},
-              {"file", file_of(figure, chart)},
-              {"folded", chart.folded},
+  const std::string description = figure.title + (chart.title.empty() ? "" : ", " + chart.title);
+  json out = {{"description", description},     {"caption", tex_text(description)},
+              {"x", axis_json(chart.x)},        {"y", axis_json(chart.y)},
+              {"tips", chart.tooltip},          {"only", chart.only},
+              {"file", file_of(figure, chart)}, {"folded", chart.folded},
               {"height", chart.height}};
   if (!chart.words.name.empty()) out["words"] = {{"name", chart.words.name}, {"value", chart.words.value}};
   return out;

@@ -208,11 +208,10 @@ std::string work_in_words(const Study& study) {
 }
 
 std::vector<std::string> what_else_errs(const Study& study) {
-  const std::string reference = discretization_reference(study);
-  if (reference == "the finer mesh") return {"mesh"};
+  if (is_against_meshes_alone(study)) return {"mesh"};
   std::vector<std::string> out = {"mesh", "steps"};
   if (number_at(at(study.description, "mesh"), "elements") == 1) out.erase(out.begin());  // there is none to refine
-  if (reference != "the closed form") out.emplace_back("references");
+  if (discretization_reference(study) != "the closed form") out.emplace_back("references");
   return out;
 }
 

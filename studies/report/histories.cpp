@@ -1,7 +1,12 @@
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
+#include "studies/io/numerals.hpp"
+#include "studies/io/wording.hpp"
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/look_up.hpp"
 
@@ -58,6 +63,7 @@ void add_iterations(json& rows, const Cell& cell, std::size_t step, std::size_t 
     r["of_cell"] = "yes";
     r["error"] = residual;
     r["step"] = step + 1;
+    r["time"] = number_at(cell.record["steps"][step], "time");
     r["iteration"] = counts[i];
     r["order"] = i;
     r["unmarked"] = (i + turn) % stride != 0;
@@ -65,6 +71,19 @@ void add_iterations(json& rows, const Cell& cell, std::size_t step, std::size_t 
     r["augmentation"] = number_at(record, "augmentation");
     rows.push_back(r);
   }
+}
+
+}  // namespace
+
+namespace {
+
+/// "step 3, t = 0.3", or of runs whose steps differ "step 3, t = 0.3 (2 runs); step 4, t = 0.4 (1 run)".
+std::string in_words(const std::map<std::pair<std::size_t, double>, long>& steps) {
+  std::string out;
+  for (const auto& [step, runs] : steps)
+    out += fmt::format("{}step {}, t = {}{}", out.empty() ? "" : "; ", step.first + 1, number(step.second),
+                       steps.size() > 1 ? " (" + counted(runs, "run") + ")" : "");
+  return out;
 }
 
 }  // namespace
@@ -84,6 +103,7 @@ std::optional<Figure> convergence_histories(const Study& study) {
                 "first guess comes before the first";
   const auto shown = telling_cells(study, Furthest::left_out);
   add_first(series, study, shown);
+  std::map<std::pair<std::size_t, double>, long> steps;  // with how many runs each is shown of
   for (const auto& cell : study.cells) {
     if (cell.variant != study.main_variant) continue;
     const auto step = hardest_step(cell);
@@ -91,18 +111,22 @@ std::optional<Figure> convergence_histories(const Study& study) {
     const std::string name = in_words(cell);
     series.add(name, cell.family);
     add_iterations(figure.rows, cell, *step, 2 * series.place(name));
+    ++steps[{*step, number_at(cell.record["steps"][*step], "time")}];
   }
   if (figure.rows.empty()) return std::nullopt;
   const bool augmented =
       std::any_of(figure.rows.begin(), figure.rows.end(), [](const json& r) { return r["augmentation"] > 1; });
   figure.text +=
       augmented ? "; an augmented run begins each augmentation with a new guess, which is the sawtooth." : ".";
+  figure.text += steps.size() == 1 ? " It is " + in_words(steps) + "." : " They are " + in_words(steps) + ".";
   show_zeros(figure.rows, "error");
   figure.series = series.list;
   figure.charts.push_back({.title = "",
                            .x = {.field = "iteration", .title = "Newton iterations of the step", .least_step = 1},
                            .y = {"shown", "relative residual", Spacing::logarithmic},
                            .tooltip = {{"series", "run"},
+                                       {"step", "step"},
+                                       {"time", "t"},
                                        {"iteration", "iteration"},
                                        {"error", "residual"},
                                        {"changed", "points that changed state"},

@@ -164,7 +164,7 @@ std::string take_out_constant_columns(Table& table) {
     table.header.erase(table.header.begin() + at);
     for (auto& row : table.rows) row.erase(row.begin() + at);
   }
-  return out.empty() ? out : "In every row: " + out + ".";
+  return out.empty() ? out : "The same in every row: " + out + ".";
 }
 
 std::string compact_html(Table table, std::string_view caption) {

@@ -54,7 +54,7 @@ struct Table {
 std::string to_html(const Table& table, std::string_view caption);
 
 /// Takes out of a table of several rows the columns, but for the first, that say the same in each. What they say, as a
-/// sentence ("In every row: scene a, cutbacks 0."); "" where there are none.
+/// sentence ("The same in every row: scene a, cutbacks 0."); "" where there are none.
 std::string take_out_constant_columns(Table& table);
 
 /// The table without its constant columns, which a line above it names.

@@ -130,8 +130,8 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
                      ? "Penalty lets bodies penetrate" + std::string(is_frictionless(study) ? "" : " and creep") +
                            " by an amount that is proportional to 1/stiffness where it is small: the dotted line of "
                            "slope -1. Rounding, which grows with the stiffness, may lift the error again. "
-                           "What an augmented Lagrangian converges to does not depend on its scale: its line shows "
-                           "what its tolerance leaves, which may, and rounding. "
+                           "An augmented Lagrangian converges to the same answer with any scale. Its error comes from "
+                           "rounding and from its tolerance; the latter may change with the scale. "
                      : "";
   if (std::any_of(figure.rows.begin(), figure.rows.end(), [](const json& r) { return r.value("unmarked", false); }))
     figure.text += "A level line is the best run of a method without the option. ";

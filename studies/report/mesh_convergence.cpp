@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "studies/io/wording.hpp"
 #include "studies/report/chart_parts.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/labels.hpp"
@@ -111,6 +112,16 @@ std::vector<Bundle> bundled(std::vector<Curve> curves) {
   return bundles;
 }
 
+/// What errors on different meshes have in common with one another, or have not: a mesh compared with itself shows less
+/// than its error, and not the same share of it on each.
+std::string against_itself(const Study& study) {
+  for (const auto& reference : array_at(study.description, "reference"))
+    if (const json& overkill = at(reference, "overkill"); !overkill.is_null() && object_at(overkill, "vary").empty())
+      return fmt::format(" Each mesh is compared with itself, {} finer, and not with one common mesh.",
+                         counted(static_cast<long>(number_at(overkill, "refine")), "level"));
+  return {};
+}
+
 /// The curves of each scene and quantity.
 std::map<std::pair<std::string, std::string>, std::vector<Curve>> curves_of(const Study& study) {
   std::map<std::pair<std::string, std::string>, std::vector<Curve>> out;
@@ -192,10 +203,11 @@ std::optional<Figure> mesh_convergence(const Study& study) {
   figure.series = series.list;
   figure.text =
       std::string(varied ? "The meshes are those that the study varies." : "Each level halves the elements.") +
+      " Errors are against " + discretization_reference(study) + "." + against_itself(study) +
       " In the first chart runs that differ by less than 10 % on every mesh are one curve. Where a loose "
       "setting's curve levels off, its own error has overtaken the mesh's. ";
   const std::string meshes = varied ? "displacement unknowns" : "mesh level";
-  const Quantity error{"shown", "relative error against " + discretization_reference(study), Spacing::logarithmic};
+  const Quantity error{"shown", "relative error", Spacing::logarithmic};
   figure.charts.push_back({.title = varied ? "against unknowns" : "against the mesh level",
                            .x = {.field = "level",
                                  .title = meshes,

@@ -270,15 +270,20 @@
     const data = dataOf(figure), place = document.createElement('details'), code = document.createElement('pre');
     place.className = 'paper';
     place.innerHTML = '<summary>For a paper</summary><p>Width in mm: <input type="number" min="40" max="400" value="85"> ' +
-        '(85: one column, 170: two) <button type="button">Save as SVG</button></p>';
+        '(85: one column, 170: two; in LaTeX no wider than the column) <button type="button">Save as SVG</button></p>';
     place.append(code);
     const width = place.querySelector('input');
     const write = () => {
-      const graphics = data.charts.filter((chart) => !chart.folded).map((chart) => `  \\input{figures/${chart.file}.pgf}\n`);
-      const wide = Number(width.value) > 120 ? '*' : '';
-      code.textContent = `% \\usepackage{pgf}\n\\begin{figure${wide}}\n  \\centering\n` +
-          `  {\\setlength{\\linewidth}{${width.value}mm}%\n${graphics.join('')}  }\n  \\caption{${data.caption}}\n` +
-          `  \\label{fig:${figure.id}}\n\\end{figure${wide}}\n`;
+      const wide = Number(width.value) > 120 ? '*' : '', charts = data.charts.filter((chart) => !chart.folded);
+      const figures = [];  // one chart each, over two columns two
+      while (charts.length > 0) figures.push(charts.splice(0, wide ? 2 : 1));
+      const graphic = (chart, i, {length}) => length === 1 ? `  \\input{figures/${chart.file}.pgf}\n` :
+          `  \\begin{minipage}{.49\\linewidth}\\input{figures/${chart.file}.pgf}\\end{minipage}` +
+          (i === 0 ? '\\hspace{.01\\linewidth}%\n' : '\n');
+      code.textContent = '% \\usepackage{pgf}\n' + figures.map((group, i) => `\\begin{figure${wide}}\n  \\centering\n` +
+          `  \\ifdim\\linewidth>${width.value}mm \\setlength{\\linewidth}{${width.value}mm}\\fi\n${group.map(graphic).join('')}` +
+          `  \\caption{${group.length === 1 ? group[0].caption : data.caption}}\n` +
+          `  \\label{fig:${figure.id}${i > 0 ? `-${i + 1}` : ''}}\n\\end{figure${wide}}\n`).join('');
     };
     write();
     width.addEventListener('input', write);

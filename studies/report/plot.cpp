@@ -107,7 +107,22 @@ std::vector<std::pair<double, std::string>> labelled(const std::vector<double>& 
   return out;
 }
 
-void draw_axes(const Frame& frame, const Chart& chart, Drawing& drawing) {
+/// A text in lines that are no wider than that, but for words that are.
+std::vector<std::string> wrapped(const std::string& text, double size, double width) {
+  std::vector<std::string> lines;
+  std::istringstream words(text);
+  for (std::string word; words >> word;)
+    if (lines.empty() || text_width(lines.back() + " " + word, size) > width)
+      lines.push_back(word);
+    else
+      lines.back() += " " + word;
+  return lines;
+}
+
+constexpr double line_height = 15;  ///< of texts in several lines
+
+/// Where the last line of the title of x stands.
+double draw_axes(const Frame& frame, const Chart& chart, Drawing& drawing) {
   const Style grid{"line"};
   const double right = frame.right, bottom = frame.bottom;
   for (const auto& [tick, label] : labelled(frame.x.ticks(chart.x.least_step))) {
@@ -120,8 +135,12 @@ void draw_axes(const Frame& frame, const Chart& chart, Drawing& drawing) {
     drawing.text(left - 6, frame.y(tick) + 4, label, {Anchor::end});
   }
   drawing.path(Path().move(left, top).line(left, bottom).line(right, bottom), {"ink"});
-  drawing.text((left + right) / 2, bottom + 36, axis_text(chart.x, *frame.rows.front()), {Anchor::middle});
   drawing.text(14, (top + bottom) / 2, axis_text(chart.y, *frame.rows.front()), {Anchor::middle, 12, "ink", true});
+  const double middle = (left + right) / 2;
+  double y = bottom + 36 - line_height;
+  for (const auto& line : wrapped(axis_text(chart.x, *frame.rows.front()), 12, 2 * (frame.width - middle)))
+    drawing.text(middle, y += line_height, line, {Anchor::middle});
+  return y;
 }
 
 /// The line on which exact zeros stand, where there are any.
@@ -227,7 +246,7 @@ class EndValues {
   }
 
  private:
-  static constexpr double size = 11, aside = 7, above = 6, below = 14;
+  static constexpr double size = 11, aside = 7, above = 6, below = 14, apart = 4;
 
   void draw_value(const json& row, const std::string& after, const std::string& color, Drawing& drawing) {
     if (!row.contains(chart_.words.value)) return;
@@ -243,7 +262,8 @@ class EndValues {
     const auto clear = std::find_if(boxes.begin(), boxes.end(), [&](const Box& box) { return !is_on_a_line(box); });
     if (boxes.empty()) return;
     const Box& box = clear == boxes.end() ? boxes.front() : *clear;
-    taken_.push_back(box);
+    // not one number with the next, in fonts of documents that are wider too
+    taken_.push_back({box.left - apart, box.right + apart + 0.15 * wide, box.top, box.bottom});
     drawing.text(box.left, box.bottom, value, {Anchor::start, size, color});
   }
 
@@ -311,40 +331,32 @@ std::string chosen_in_words(const Figure& figure) {
 
 /// Words below a drawing in lines as wide as it. Where the last ends.
 double draw_note(const std::string& text, double y, double width, Drawing& drawing) {
-  constexpr double size = 11, line_height = 15, from = 10;
-  std::istringstream words(text);
-  std::string line;
-  const auto end_line = [&] {
+  constexpr double size = 11, from = 10;
+  for (const auto& line : wrapped(text, size, width - from)) {
     drawing.text(from, y, line, {Anchor::start, size, "soft"});
     y += line_height;
-    line.clear();
-  };
-  for (std::string word; words >> word;) {
-    if (!line.empty() && from + text_width(line + " " + word, size) > width) end_line();
-    line += (line.empty() ? "" : " ") + word;
   }
-  if (!line.empty()) end_line();
   return y;
 }
 
-/// The names of what is drawn below the axes, side by side where they have room. Its height.
-double draw_legend(const Frame& frame, const Chart& chart, const std::vector<const Series*>& present,
+/// The names of what is drawn, from y on, side by side where they have room. Where they end.
+double draw_legend(const Frame& frame, const Chart& chart, const std::vector<const Series*>& present, double y,
                    Drawing& drawing) {
-  constexpr double line_height = 18, sample = 34, gap = 8, apart = 20;
-  double x = 10, y = frame.bottom + 58;
+  constexpr double entry_height = 18, sample = 34, gap = 8, apart = 20;
+  double x = 10;
   for (const Series* series : present) {
     const std::string name = name_of(*series, frame, chart);
     const double wide = sample + gap + text_width(name, 12);
     if (x > 10 && x + wide > frame.width) {
       x = 10;
-      y += line_height;
+      y += entry_height;
     }
     drawing.line(x, y, x + sample, y, style_of(*series, true));
     if (has_markers(frame, *series)) drawing.path(marker(series->shape, x + sample / 2, y), style_of(*series, false));
     drawing.text(x + sample + gap, y + 4, name);
     x += wide + apart;
   }
-  return y + line_height;
+  return y + entry_height;
 }
 
 }  // namespace
@@ -403,14 +415,14 @@ std::optional<Drawing> draw_plot(const Figure& figure, const Chart& chart, doubl
   const auto frame = frame_of(figure, chart, width);
   if (!frame) return std::nullopt;
   Drawing drawing(width, frame->bottom, figure.title + (chart.title.empty() ? "" : ", " + chart.title), figure.text);
-  draw_axes(*frame, chart, drawing);
+  const double title = draw_axes(*frame, chart, drawing);
   draw_ground(*frame, drawing);
   draw_guides(*frame, chart, drawing);
   EndValues values(figure, *frame, chart);
   std::vector<const Series*> present;
   for (const auto& series : figure.series)
     if (draw_series(*frame, chart, series, values, drawing)) present.push_back(&series);
-  const double below = draw_legend(*frame, chart, present, drawing);
+  const double below = draw_legend(*frame, chart, present, title + 22, drawing);
   drawing.set_height(draw_note(chosen_in_words(figure), below + 4, width, drawing));
   return drawing;
 }

@@ -13,6 +13,7 @@
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/input_fault.hpp"
 #include "studies/io/result_rows.hpp"
+#include "studies/io/wording.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
@@ -366,13 +367,41 @@ const Knob* find_knob(const Cell& cell, const std::string& name) {
   return nullptr;
 }
 
+namespace {
+
+/// "the finer mesh", or which one mesh all cells have: "the common mesh (fine.msh, 1 level finer)".
+std::string overkill_in_words(const json& overkill) {
+  const json& meshes = object_at(overkill, "vary");
+  if (meshes.empty()) return "the finer mesh";
+  std::vector<std::string> parts;
+  for (const auto& [pointer, value] : meshes.items()) {
+    const std::string part =
+        value.is_string() ? value.get<std::string>() : pointer.substr(pointer.rfind('/') + 1) + " = " + shown(value);
+    if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
+  }
+  if (const auto levels = static_cast<long>(number_at(overkill, "refine")); levels > 0)
+    parts.push_back(counted(levels, "level") + " finer");
+  return fmt::format("the common mesh ({})", fmt::join(parts, ", "));
+}
+
+}  // namespace
+
 std::string discretization_reference(const Study& study) {
   std::set<std::string> kinds;
-  for (const auto& entry : array_at(study.description, "reference"))
-    for (const auto& [key, words] :
-         {std::pair{"analytic", "the closed form"}, {"overkill", "the finer mesh"}, {"values", "the given values"}})
+  for (const auto& entry : array_at(study.description, "reference")) {
+    for (const auto& [key, words] : {std::pair{"analytic", "the closed form"}, {"values", "the given values"}})
       if (!at(entry, key).is_null()) kinds.insert(words);
+    if (const json& overkill = at(entry, "overkill"); !overkill.is_null()) kinds.insert(overkill_in_words(overkill));
+  }
   return kinds.size() == 1 ? *kinds.begin() : "the references";
+}
+
+bool is_against_meshes_alone(const Study& study) {
+  const json& references = array_at(study.description, "reference");
+  const auto has = [&](const char* key) {
+    return std::any_of(references.begin(), references.end(), [&](const json& of) { return !at(of, key).is_null(); });
+  };
+  return has("overkill") && !has("analytic") && !has("values");
 }
 
 namespace {

@@ -82,9 +82,12 @@ std::vector<std::string> knob_names(const Study& study);
 
 const Knob* find_knob(const Cell& cell, const std::string& name);
 
-/// What the discretisation errors are against: "the closed form", "the finer mesh", "the given values", or, where the
-/// study has several of them or names none, "the references".
+/// What the discretisation errors are against: "the closed form", "the finer mesh", "the common mesh (fine.msh)", "the
+/// given values", or, where the study has several of them or names none, "the references".
 std::string discretization_reference(const Study& study);
+
+/// Whether that is finer meshes alone, which have the steps of the runs.
+bool is_against_meshes_alone(const Study& study);
 
 /// Study::ratio of the mesh of a cell; 0 where it was not measured.
 double ratio_of(const std::map<std::string, double>& ratio, const Cell& cell);

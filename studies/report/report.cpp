@@ -213,7 +213,7 @@ void write_report(const std::filesystem::path& directory, Pdfs pdfs) try {
   write_figures(directory, figures.figures, figures.plates, pdfs);
 } catch (const json::exception& error) {  // rows have checksums; what else is recorded may have been edited
   throw InputFault(directory.string() + ": study.json, picture.json or rows without a checksum hold what stickslip " +
-                   "does not write (" + error.what() + "); delete them, and run the study again with --resume");
+                   "does not write (" + error.what() + "); delete them, and resume the study");
 }
 
 void write_run_report(const std::filesystem::path& directory, Pdfs pdfs) try {

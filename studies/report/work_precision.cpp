@@ -91,8 +91,11 @@ json rows_of(const Study& study, const Subject& subject, SeriesList& series) {
       r["scene"] = cell.variant;
       r["quantity"] = subject.is_of_state() ? in_plain_words(quantity) : quantity;
       r["error"] = error;
+      const Counts counts = counts_of(cell, derivative ? Of::sensitivities : Of::responses);
+      r["factorizations"] = counts.factorizations;
+      r["backsolves"] = counts.backsolves;
+      r["r"] = ratio_of(study.ratio, cell);
       r["work"] = derivative ? cell.sensitivity_work : cell.work;
-      r["backsolves"] = cell.count("backsolves") + (derivative ? cell.count("sensitivity_backsolves") : 0);
       r["seconds"] = derivative ? cell.sensitivity_seconds : cell.seconds;
       const Knob* value = find_knob(cell, knob);
       if (const double median = derivative ? cell.median_sensitivity_seconds : cell.median_seconds; median > 0)
@@ -137,7 +140,7 @@ void describe(const Study& study, const Subject& subject, Figure& figure) {
     figure.title = (subject.derivative ? "Sensitivities: error against " : "Responses: error against ") + reference;
     figure.text =
         "Discretisation error: the distance from " + reference +
-        (reference == "the finer mesh"
+        (is_against_meshes_alone(study)
              ? ", which has the same steps: mesh and method together. Where curves lie on one level, the mesh decides "
                "and "
                "a stricter method buys nothing. "

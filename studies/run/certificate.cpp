@@ -7,9 +7,12 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "studies/io/input_fault.hpp"
 #include "studies/io/json_document.hpp"
+#include "studies/io/json_pointer.hpp"
+#include "studies/io/wording.hpp"
 
 namespace stickslip {
 namespace {
@@ -29,6 +32,68 @@ json parsed_file(const fs::path& file) {
   }
 }
 
+bool are_numbers(const json& list) {
+  return list.is_array() && std::all_of(list.begin(), list.end(), [](const json& each) { return each.is_number(); });
+}
+bool are_indices(const json& list) {
+  return list.is_array() &&
+         std::all_of(list.begin(), list.end(), [](const json& each) { return each.is_number_unsigned(); });
+}
+
+/// Throws SolutionFault if a key that is there, or must be, has not the kind of value that docs/verify.md says.
+void check_value(const json& object, const std::string& pointer, const char* key, bool required, const char* kind,
+                 const auto& is_kind) {
+  if (!object.contains(key)) {
+    if (required) throw SolutionFault(pointer, "the key " + in_quotes(key) + " is missing: " + kind);
+    return;
+  }
+  if (!is_kind(object.at(key)))
+    throw SolutionFault(child_pointer(pointer, key), "is " + shown(object.at(key)) + "; must be " + kind);
+}
+
+void check_contact(const json& contact, const std::string& pointer) {
+  if (!contact.is_object()) throw SolutionFault(pointer, "is " + shown(contact) + R"(; must be {"nodes", "traction"})");
+  check_value(contact, pointer, "nodes", true, "a list of nodes, whole numbers from 0", are_indices);
+  check_value(contact, pointer, "traction", true, "a list of numbers, of each node by axis", are_numbers);
+}
+
+void check_increment(const json& increment, const std::string& pointer) {
+  if (!increment.is_object()) throw SolutionFault(pointer, "is " + shown(increment) + "; must be an object");
+  check_value(increment, pointer, "time", true, "a number", [](const json& time) { return time.is_number(); });
+  check_value(increment, pointer, "displacement", true, "a list of numbers, of each node by axis", are_numbers);
+  const auto is_object = [](const json& value) { return value.is_object(); };
+  check_value(increment, pointer, "contacts", false, R"(an object, {"NAME": {"nodes", "traction"}})", is_object);
+  const json contacts = increment.value("contacts", json::object());
+  for (const auto& [name, contact] : contacts.items())
+    check_contact(contact, child_pointer(pointer + "/contacts", name));
+}
+
+/// Throws SolutionFault at the first value that is not as docs/verify.md says.
+void check_solution(const json& solution) {
+  if (!solution.is_object() || solution.value("schema", json()) != "stickslip_solution" ||
+      solution.value("version", json()) != 1)
+    throw SolutionFault("", R"(must have "schema": "stickslip_solution" and "version": 1)");
+  static const std::vector<std::string> known = {"schema",     "version", "scene",    "mesh",
+                                                 "increments", "nodes",   "accuracy", "bodies"};
+  for (const auto& [key, unused] : solution.items())
+    if (std::ranges::find(known, key) == known.end())
+      throw SolutionFault(child_pointer("", key), "unknown key " + in_quotes(key) + ";" + suggestion(key, known) +
+                                                      " allowed: " + listed(known));
+  const auto are_places = [](const json& nodes) {
+    return nodes.is_array() && std::all_of(nodes.begin(), nodes.end(), are_numbers);
+  };
+  const auto by_name = [](const json& bodies) {
+    return bodies.is_object() && std::all_of(bodies.begin(), bodies.end(), are_indices);
+  };
+  const auto is_share = [](const json& value) { return value.is_number() && value.get<double>() >= 0; };
+  check_value(solution, "", "increments", true, "a list of increments", [](const json& v) { return v.is_array(); });
+  check_value(solution, "", "nodes", false, "a list of coordinates, [[x, y], ...]", are_places);
+  check_value(solution, "", "bodies", false, R"({"NAME": [nodes]}, nodes whole numbers from 0)", by_name);
+  check_value(solution, "", "accuracy", false, "a number >= 0", is_share);
+  for (std::size_t n = 0; n < solution["increments"].size(); ++n)
+    check_increment(solution["increments"][n], "/increments/" + std::to_string(n));
+}
+
 /// Coordinates of nodes, [[x, y], ...] or with z.
 std::vector<std::vector<double>> coordinates_of(const json& nodes) { return nodes; }
 
@@ -41,7 +106,8 @@ class NodeMatch {
     for (const auto& [name, body] : mesh.at("bodies").items())
       for (const auto& element : body.at("elements"))
         for (const int node : element) body_of_[node] = name;
-    for (const auto& [name, nodes] : solution.value("bodies", json::object()).items())
+    const json bodies = solution.value("bodies", json::object());
+    for (const auto& [name, nodes] : bodies.items())
       for (const int node : nodes) given_body_[node] = name;
     const auto places = coordinates_of(solution.at("nodes"));
     for (std::size_t n = 0; n < places.size(); ++n) match_.push_back(find(places[n], static_cast<int>(n)));
@@ -52,20 +118,26 @@ class NodeMatch {
  private:
   int find(const std::vector<double>& place, int n) const {
     const auto body = given_body_.find(n);
+    const std::string pointer = "/nodes/" + std::to_string(n);
     int found = -1;
     for (std::size_t m = 0; m < nodes_.size(); ++m) {
       if (place.size() != nodes_[m].size())
-        throw InputFault(fmt::format("node {} of the solution has {} coordinates, those of the mesh {}", n,
-                                     place.size(), nodes_[m].size()));
+        throw SolutionFault(pointer, fmt::format("node {} of the solution has {} coordinates, those of the mesh {}", n,
+                                                 place.size(), nodes_[m].size()));
       bool apart = false;
       for (std::size_t i = 0; i < place.size(); ++i) apart |= !(std::abs(nodes_[m][i] - place[i]) <= near_);
       if (apart || (body != given_body_.end() && body->second != body_of_.at(static_cast<int>(m)))) continue;
       if (found >= 0)
-        throw InputFault(
+        throw SolutionFault(
+            pointer,
             fmt::format("node {} of the solution is where several nodes are; \"bodies\" must name its body", n));
       found = static_cast<int>(m);
     }
-    if (found < 0) throw InputFault(fmt::format("node {} of the solution is where the mesh has none", n));
+    if (found < 0)
+      throw SolutionFault(pointer,
+                          fmt::format("node {} of the solution is at ({}), where the mesh has none; places agree to "
+                                      "1e-6 of the largest coordinate, in the units of the scene",
+                                      n, fmt::join(place, ", ")));
     return found;
   }
 
@@ -81,15 +153,20 @@ void renumber(const json& mesh, json& solution) {
   if (!solution.contains("nodes")) return;
   const NodeMatch match(mesh, solution);
   const std::size_t dimension = mesh.at("nodes").at(0).size();
-  for (auto& increment : solution.at("increments")) {
+  for (std::size_t k = 0; k < solution.at("increments").size(); ++k) {
+    json& increment = solution["increments"][k];
     const json given = increment.at("displacement");
-    if (given.size() != match.size() * dimension) throw InputFault("a displacement has not as many numbers as nodes");
+    if (given.size() != match.size() * dimension)
+      throw SolutionFault(fmt::format("/increments/{}/displacement", k),
+                          fmt::format("has {} numbers; must have {}: {} nodes by {} axes", given.size(),
+                                      match.size() * dimension, match.size(), dimension));
     json& own = increment["displacement"] = std::vector<double>(mesh.at("nodes").size() * dimension, NAN);
     for (std::size_t n = 0; n < match.size(); ++n)
       for (std::size_t i = 0; i < dimension; ++i)
         own[match[static_cast<int>(n)] * dimension + i] = given[n * dimension + i];
-    for (auto& [name, contact] : increment.value("contacts", json::object()).items())
-      for (auto& node : increment["contacts"][name].at("nodes")) node = match[node.get<int>()];
+    if (increment.contains("contacts"))
+      for (auto& [name, contact] : increment["contacts"].items())
+        for (auto& node : contact.at("nodes")) node = match[node.get<int>()];
   }
 }
 
@@ -110,10 +187,18 @@ verify::Certificate of_files(const std::string& name, Certify&& certify) {
 
 json read_solution(const fs::path& file) {
   json solution = parsed_file(file);
-  if (!solution.is_object() || solution.value("schema", "") != "stickslip_solution" ||
-      solution.value("version", 0) != 1)
-    throw InputFault(file.string() + R"(: must have "schema": "stickslip_solution" and "version": 1)");
+  try {
+    check_solution(solution);
+  } catch (const SolutionFault& fault) {
+    throw InputFault(in_file(file, fault));
+  }
   return solution;
+}
+
+std::string in_file(const fs::path& file, const SolutionFault& fault) {
+  Diagnostics none;
+  const auto document = JsonDocument::read(file.string(), none);
+  return Diagnostic{document ? document->place(fault.pointer) : Place{file.string()}, "", fault.what()}.text();
 }
 
 verify::Certificate certificate_of_peer(const json& own, json solution) {
@@ -138,8 +223,15 @@ verify::Certificate certificate_of(const fs::path& directory, const std::string&
     if (left_out.is_string())
       throw InputFault((directory / "solution.json").string() + ": was left out: " + left_out.get<std::string>());
     const json own = read_solution(directory / "solution.json");
-    return solution.empty() ? verify::certify(own.at("scene"), own.at("mesh"), own, result)
-                            : certificate_of_peer(own, read_solution(solution));
+    if (solution.empty()) return verify::certify(own.at("scene"), own.at("mesh"), own, result);
+    const json peer = read_solution(solution);
+    try {
+      return certificate_of_peer(own, peer);
+    } catch (const SolutionFault& fault) {
+      throw InputFault(in_file(solution, fault));
+    } catch (const InputFault& fault) {
+      throw InputFault(solution + ": " + fault.what());
+    }
   });
 }
 

@@ -5,9 +5,20 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "studies/io/input_fault.hpp"
 #include "studies/verify/verify.hpp"
 
 namespace stickslip {
+
+/// A value in the file of a solution that is not as it should be; what() begins with its pointer.
+struct SolutionFault : InputFault {
+  std::string pointer;
+  SolutionFault(const std::string& at, const std::string& message)
+      : InputFault((at.empty() ? "" : at + ": ") + message), pointer(at) {}
+};
+
+/// "FILE:LINE:COL: POINTER: what is wrong".
+std::string in_file(const std::filesystem::path& file, const SolutionFault& fault);
 
 /// `solution`: file of another program's solution; empty: the run's own. Throws InputFault where a file is missing, was
 /// left out, or is not as it should be.

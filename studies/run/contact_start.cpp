@@ -9,6 +9,7 @@
 #include "core/model/state.hpp"
 #include "methods/stepping/free_bodies.hpp"
 #include "studies/run/contact_points.hpp"
+#include "studies/run/side_curve.hpp"
 
 namespace stickslip {
 namespace {
@@ -102,10 +103,16 @@ std::vector<Warning> overlaps_at_start(const Problem& problem) {
   std::vector<Warning> warnings;
   for (const auto& gaps : start_gaps(problem)) {
     if (gaps.unasked == 0) continue;
+    const auto& contacts = problem.model.scene.contacts;
+    const auto contact = std::ranges::find(contacts, gaps.name, &Contact::name);
+    const bool rigid = obstacle_of(problem.model, static_cast<int>(contact - contacts.begin())) != nullptr;
     warnings.push_back(
         {WarningCode::starts_overlapping, gaps.name, gaps.overlap,
-         "move the bodies apart; turn the master round if it is solid on the wrong side; refine curved sides, whose "
-         "facets leave the curve; if an interference is meant, let the sides touch and give it as a negative `offset`",
+         fmt::format(
+             "move the bodies apart; {}; refine curved sides, whose facets leave the curve; if an interference is "
+             "meant, let the sides touch and give it as a negative `offset`",
+             rigid ? "turn the master round if it is solid on the wrong side"
+                   : "take other sides if a body is meant to be inside of the other"),
          fmt::format("{}: {} of {} points overlap at the start by up to {:.3g}, which no `offset` asks for, and the "
                      "first step pushes them apart",
                      gaps.name, gaps.unasked, gaps.points, gaps.overlap)});
@@ -119,9 +126,13 @@ std::vector<Warning> contacts_never_closed(const CaseResult& result) {
   for (const auto& [name, gap] : least_gaps_of_open_rules(result)) {
     const std::string nearest =
         std::isfinite(gap) ? fmt::format("the nearest is {:.3g} away at the least", gap) : "none ever faces the master";
-    warnings.push_back({WarningCode::never_closes, name, gap,
-                        "look at the gap at the start, the direction of loads and motions, and the side on which the "
-                        "master is solid",
+    const char* const remedy =
+        std::isfinite(gap)
+            ? "look at the gap at the start, the direction of loads and motions, and the side on which the "
+              "master is solid"
+            : "take the sides that face one another as slave and master: the far side of a body faces "
+              "nothing, nor does one that is inside of the other body";
+    warnings.push_back({WarningCode::never_closes, name, gap, remedy,
                         fmt::format("{}: no point closes in any of {} steps; {}", name, result.steps.size(), nearest)});
   }
   return warnings;

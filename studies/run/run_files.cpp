@@ -10,9 +10,10 @@
 
 namespace stickslip {
 
-OutputFolder folder_of_run(const std::filesystem::path& directory, const std::vector<std::string>& others) {
+OutputFolder folder_of_run(const std::filesystem::path& directory, const std::vector<std::string>& others,
+                           const Caller& caller) {
   if (holds(directory, "study.json"))
-    throw InputFault(directory.string() + ": holds a study; -o DIR writes to another directory");
+    throw InputFault(directory.string() + ": holds a study; " + caller.directory + " writes to another directory");
   std::vector<std::string> names(others);
   names.insert(names.end(), {"result.json", "solution.json"});
   names.insert(names.end(), std::begin(field_names), std::end(field_names));
@@ -53,7 +54,7 @@ nlohmann::json write_result(const std::filesystem::path& directory, const Simula
   written.files += static_cast<long>(fields.size());
   written.fields = file_bytes(directory, fields);
   const auto solution = write_solution(directory, simulation, result, written);
-  auto document = result_json(result, canonical_text(simulation.input));
+  auto document = result_json(simulation, result);
   document["solution"] = solution;
   document["cost"]["seconds"]["output"] = written.seconds;
   document["ledger"] = ledger_json(ledger(result, written));

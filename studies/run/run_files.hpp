@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/io/caller.hpp"
 #include "studies/io/output_folder.hpp"
 #include "studies/run/ledger.hpp"
 #include "studies/run/simulation.hpp"
@@ -14,7 +15,8 @@ namespace stickslip {
 
 /// The folder of a run, for result.json, fields and `others`. Throws what OutputFolder throws, and InputFault if it
 /// holds a study.
-OutputFolder folder_of_run(const std::filesystem::path& directory, const std::vector<std::string>& others = {});
+OutputFolder folder_of_run(const std::filesystem::path& directory, const std::vector<std::string>& others = {},
+                           const Caller& caller = command_line);
 
 /// Deletes what an earlier run left, which would mix with the files of the next.
 void remove_run(const std::filesystem::path& directory);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <tuple>
 
 #include "methods/stepping/engine_choice.hpp"
 #include "studies/input/size_estimate.hpp"
@@ -38,6 +40,26 @@ void add_steps(const Model& model, const Input& input, ProblemSize& size) {
 
 }  // namespace
 
+std::vector<int> order_of(const std::vector<Parameter>& parameters, const JsonDocument& scene) {
+  using nlohmann::json;
+  const auto place_of = [&](const std::string& name) -> std::optional<Place> {
+    const json* named = value_at(scene.root(), "/parameters");
+    for (const auto& known : {name, name.substr(0, name.rfind('/'))})
+      if (named && named->is_object() && named->contains(known))
+        return scene.key_place(child_pointer("/parameters", known));
+    return std::nullopt;
+  };
+  std::vector<std::tuple<bool, int, int>> ranks;
+  for (const auto& parameter : parameters) {
+    const auto place = place_of(parameter.name);
+    ranks.emplace_back(!place, place ? place->line : 0, place ? place->column : 0);
+  }
+  std::vector<int> order(parameters.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](int j) { return ranks[j]; });
+  return order;
+}
+
 std::optional<Simulation> prepare(const JsonDocument& document, const Overrides& overrides,
                                   const std::optional<std::string>& method, Diagnostics& diagnostics) {
   auto input = read_scene(document, overrides, method, diagnostics);
@@ -45,7 +67,8 @@ std::optional<Simulation> prepare(const JsonDocument& document, const Overrides&
   try {
     auto problem = std::make_shared<const Problem>(input->scene);
     check_memory(*problem, *input);
-    return Simulation{std::move(*input), problem};
+    auto order = order_of(problem->model.scene.parameters, document);
+    return Simulation{std::move(*input), problem, std::move(order)};
   } catch (const ModelError& error) {
     diagnostics.error({document.place(error.pointer), error.pointer, error.what()});
     return std::nullopt;
@@ -96,6 +119,13 @@ RunOptions run_options(const Input& input) {
   if (input.scene.sensitivity_mode == SensitivityMode::adjoint) options.state_memory = input.state_memory;
   options.output_every = fields_every(input.output);
   return options;
+}
+
+nlohmann::json result_json(const Simulation& simulation, const CaseResult& result) {
+  auto out = result_json(result, canonical_text(simulation.input));
+  for (const int j : simulation.order)
+    out["parameter_order"].push_back(simulation.problem->model.scene.parameters[j].name);
+  return out;
 }
 
 CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step, Trace* trace) {

@@ -17,7 +17,12 @@ namespace stickslip {
 struct Simulation {
   Input input;
   std::shared_ptr<const Problem> problem;
+  std::vector<int> order;  ///< indices of the parameters, in the order in which the scene names them
 };
+
+/// Simulation::order of a scene as it is written; parameters that it does not name, as they were set, are the last. A node
+/// of a shape NAME is NAME/0, NAME/1, ...
+std::vector<int> order_of(const std::vector<Parameter>& parameters, const JsonDocument& scene);
 
 /// Reads a scene and makes its problem. None if there is a fault; the diagnostics then have all faults. `overrides`:
 /// "POINTER=VALUE" each; `method`: replaces that of the scene.
@@ -41,5 +46,8 @@ RunOptions run_options(const Input& input);
 /// Result of a run. `on_step` is called after each step of the scene; an exception from it ends the run. `trace`:
 /// records every iterate; nullptr: none.
 CaseResult simulate(const Simulation& simulation, const std::function<void()>& on_step = {}, Trace* trace = nullptr);
+
+/// result.json of a simulation.
+nlohmann::json result_json(const Simulation& simulation, const CaseResult& result);
 
 }  // namespace stickslip

@@ -26,6 +26,15 @@ std::optional<std::pair<PlanePlace, double>> start_against(const Problem& proble
   return std::pair{foot.normal, foot.gap};
 }
 
+/// The slave is on the far side of its body, which is as a whole where it may be: the obstacle is right.
+Warning far_side_warning(const Problem& problem, int c, int nodes) {
+  const auto& contact = problem.model.scene.contacts[c];
+  return {WarningCode::turned_surface, contact.name, static_cast<double>(nodes),
+          fmt::format("take the side of this body that faces {} as the slave", contact.master),
+          fmt::format("{0}: {1} faces away from {2}, and its body is outside of {2}: it is the far side of the body",
+                      contact.name, contact.slave, contact.master)};
+}
+
 Warning turned_warning(const Problem& problem, int c, const std::string& words, int faulty) {
   const auto& contact = problem.model.scene.contacts[c];
   const Obstacle& obstacle = *obstacle_of(problem.model, c);
@@ -72,7 +81,16 @@ std::optional<Warning> turned_surface(const Problem& problem, int c) {
     opposed += cosine < -against;
     inside += at->second < -rounding;
   }
+  const auto& body = model.bodies[side.body];
+  const auto is_inside = [&](int node) {
+    const PlanePlace x = slots.points.col(node).head<2>();
+    const auto at = start_against(problem, *obstacle, polyline, search ? &*search : nullptr, x);
+    return at && at->second < -8 * unit_roundoff * (x.norm() + std::abs(at->second));
+  };
   if (alike > 0 && opposed == 0) {
+    int within = 0;
+    for (int node = 0; node < body.mesh.node_count; ++node) within += is_inside(body.first_node + node);
+    if (within == 0) return far_side_warning(problem, c, alike);
     const auto words =
         fmt::format("the solid of {} is on the side of {}, whose outward normals point the same way as its own",
                     contact.master, contact.slave);

@@ -100,9 +100,12 @@ std::vector<CellInput> finest_of_scenes(const std::vector<CellInput>& cells) {
   return out;
 }
 
-/// Puts the method of a reference into the cell, and its mesh level.
+/// Puts the method of a reference into the cell, and its mesh.
 void set_reference(CellInput& cell, const Reference& reference) {
   set_method(cell, reference.method, std::vector<std::size_t>(reference.method.options.size(), 0));
+  if (!reference.meshes.empty()) refine_meshes(cell.document, -cell.refine, reference.method.place);
+  for (const Knob& mesh : reference.meshes)
+    cell.document.set(mesh.pointer, mesh.values.front().value, mesh.values.front().place);
   refine_meshes(cell.document, reference.refine, reference.method.place);
 }
 
@@ -190,7 +193,7 @@ std::string cell_id(const std::string& canonical, const std::string& program_ver
 void refine_meshes(JsonDocument& scene, int level, const Place& origin) {
   auto finer = [&](json& count) {
     if (!count.is_number()) return;
-    const double cells = count.get<double>() * (1 << level);
+    const double cells = std::ldexp(count.get<double>(), level);
     constexpr double most = 1e15;  // beyond, the scene's reader has something to say; here only overflow matters
     if (cells == std::floor(cells) && std::abs(cells) < most)
       count = static_cast<long long>(cells);
@@ -198,7 +201,7 @@ void refine_meshes(JsonDocument& scene, int level, const Place& origin) {
       count = cells;
   };
   JsonDocument result = scene;
-  const json bodies = level > 0 ? scene.root().value("bodies", json::object()) : json::object();
+  const json bodies = level != 0 ? scene.root().value("bodies", json::object()) : json::object();
   for (const auto& [name, body] : bodies.items()) {
     const json* mesh = value_at(body, "/mesh");
     if (!mesh || !mesh->is_object()) continue;

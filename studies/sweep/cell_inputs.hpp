@@ -50,7 +50,7 @@ CellInput reference_cell(const CellInput&, const Reference&, const std::string& 
 std::string cell_id(const std::string& canonical, const std::string& program_version);
 
 /// Makes the scene's meshes finer: twice as many cells each way a level, of generators; of an imported mesh as many more
-/// splits.
+/// splits. A level below zero takes back what as many above have made.
 void refine_meshes(JsonDocument& scene, int level, const Place& origin);
 
 }  // namespace stickslip

@@ -55,14 +55,17 @@ json to_json(const Budget& budget) {
       without.push_back(name);
     squares += part.noise * part.noise;
   }
-  json out = {
-      {"scale", budget.scale}, {"parts", parts},        {"sum", sum}, {"noise", std::sqrt(squares) / budget.scale},
-      {"error", nullptr},      {"interaction", nullptr}};
+  json out = {{"scale", budget.scale},
+              {"parts", parts},
+              {"sum", sum},
+              {"noise", std::sqrt(squares) / budget.scale},
+              {"error", nullptr},
+              {"interaction", nullptr},
+              {"without", without}};
   if (budget.error) {
     out["error"] = *budget.error / budget.scale;
     out["interaction"] = *budget.error / budget.scale - sum;
   }
-  if (!without.empty()) out["without"] = without;
   return out;
 }
 

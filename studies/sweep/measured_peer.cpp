@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "studies/io/result_rows.hpp"
 #include "studies/run/solution_file.hpp"
 
 namespace stickslip {
@@ -81,11 +82,6 @@ json interface_of(const CaseResult& result) {
   return all;
 }
 
-std::string broken_in_words(const json& worst) {
-  return fmt::format("{} at t = {:.9g}, {}", worst["law"].get<std::string>(), worst["time"].get<double>(),
-                     worst["where"].get<std::string>());
-}
-
 }  // namespace
 
 MeasuredPeer measured(const PeerSolution& peer, const json& scene, std::shared_ptr<const Problem> problem,
@@ -102,7 +98,7 @@ json row_of(const MeasuredPeer& peer) {
               {"warnings", json::array()},
               {"steps", json::array()}};
   row["message"] = certificate.holds() ? fmt::format("{}", fmt::join(certificate.remarks, "; "))
-                                       : "its certificate does not hold: " + broken_in_words(row["certificate"]);
+                                       : "its certificate does not hold: " + broken_law(row["certificate"]);
   for (const auto& step : result.steps)
     row["steps"].push_back({{"time", step.increment->time}, {"responses", responses_of(result, step)}});
   if (!result.steps.empty()) {

@@ -119,8 +119,13 @@ std::optional<Reference> read_reference(const JsonNode& node, const json& scene)
   } else if (name == "overkill") {
     reference.kind = Reference::Kind::overkill;
     reference.method = {"monolithic_al", node.place(), {}};
-    if (const auto level = value.is_object({{"refine"}}) ? value.find("refine") : std::nullopt)
-      reference.refine = level->count(1, finest_level).value_or(1);
+    if (!value.is_object({{}, {"refine", "vary"}})) return std::nullopt;
+    const auto level = value.find("refine"), meshes = value.find("vary");
+    if (!level && !meshes)
+      value.error(
+          R"(needs "refine", levels finer than the cell, or "vary", the meshes of one reference for all cells)");
+    if (level) reference.refine = level->count(1, finest_level).value_or(1);
+    if (meshes) reference.meshes = read_meshes(*meshes, scene);
   } else {
     reference.kind = Reference::Kind::method;
     const auto sweep = read_method_sweep(value, OptionLists::refused);

@@ -54,6 +54,12 @@ std::string overlapping(const std::set<std::string>& pointers, const std::string
   return inside != pointers.end() && inside->starts_with(pointer + "/") ? *inside : "";
 }
 
+/// Whether a pointer is below /bodies/NAME/mesh.
+bool is_of_mesh(const std::string& pointer) {
+  const auto name = pointer.starts_with("/bodies/") ? pointer.find('/', 8) : std::string::npos;
+  return name != std::string::npos && pointer.compare(name, 6, "/mesh/") == 0;
+}
+
 /// Whether a pointer names what a study may vary, and is not among the `known`, to which it is added; else that is
 /// reported.
 bool can_be_varied(const std::string& pointer, const JsonNode& list, const json& scene, std::set<std::string>& known) {
@@ -133,6 +139,19 @@ std::vector<Variation> read_vary(const JsonNode& node, const json& scene) {
       variations.push_back({"", {{key, values_of(entry)}}});
     }
   return variations;
+}
+
+std::vector<Knob> read_meshes(const JsonNode& node, const json& scene) {
+  std::vector<Knob> meshes;
+  std::set<std::string> known;
+  if (!node.is_map("values of meshes by JSON pointer of the scene")) return meshes;
+  if (node.members().empty()) node.error(R"(is empty; must name a mesh, as in {"/bodies/foot/mesh/gmsh": "fine.msh"})");
+  for (const auto& [pointer, value] : node.members())
+    if (!is_of_mesh(pointer))
+      value.error_at_key("must be of a mesh, /bodies/NAME/mesh/...: the reference is the same problem on another mesh");
+    else if (can_be_varied(pointer, value, scene, known))
+      meshes.push_back({pointer, {{value.value(), value.place()}}});
+  return meshes;
 }
 
 std::vector<PlacedValue> read_levels(const JsonNode& list) {

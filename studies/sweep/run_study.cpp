@@ -78,7 +78,10 @@ void check_solutions(const Study& study, const std::vector<CellInput>& cells, Me
         certificate_of_peer(solution_frame(*problem_of(input), input.document), cell.peer->solution);
       } catch (const InputFault& fault) {
         const std::string pointer = cell.peer->place.pointer + "/file";
-        diagnostics.error({study.document.place(pointer), pointer, fault.what()});
+        const auto* const located = dynamic_cast<const SolutionFault*>(&fault);
+        const fs::path file = (fs::path(study.document.file()).parent_path() / cell.peer->file).lexically_normal();
+        diagnostics.error({study.document.place(pointer), pointer,
+                           located ? in_file(file, *located) : file.string() + ": " + fault.what()});
       }
 }
 
@@ -87,10 +90,11 @@ std::optional<Plan> make_plan(const StudyArguments& arguments, MeshFiles& meshes
   if (const auto shard = parse_shard(arguments.shard))
     plan.shard = *shard;
   else
-    diagnostics.error({{"--shard " + arguments.shard}, "", "must be i/N, whole numbers with 1 <= i <= N"});
+    diagnostics.error(
+        {{diagnostics.caller().shard + arguments.shard}, "", "must be i/N, whole numbers with 1 <= i <= N"});
   constexpr int most_jobs = 1024;  // beyond, a system runs out of processes
   if (arguments.jobs < 1 || arguments.jobs > most_jobs)
-    diagnostics.error({{"--jobs " + std::to_string(arguments.jobs)}, "", "must be 1 to 1024"});
+    diagnostics.error({{diagnostics.caller().jobs + std::to_string(arguments.jobs)}, "", "must be 1 to 1024"});
   auto study = read_study(arguments.study, diagnostics);
   if (!study) return std::nullopt;
   plan.study = *std::move(study);
@@ -143,13 +147,21 @@ std::ptrdiff_t rows_of_other_shards(const Plan& plan, const RowsById& rows) {
          std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
 }
 
-/// Makes the rows those of this study in what the id of a cell does not know: where the cell stands in the study, its
-/// error budget and its certificate. What is asked for and is not there is to be measured; what is not is not shown.
-void match_extras(const Plan& plan, RowsById& rows) {
+/// Makes the rows those of this study in what the id of a cell does not know: where the cell stands in the study, what
+/// its errors are against, its error budget and its certificate. What is asked for and is not there is to be measured;
+/// what is not is not shown.
+void match_extras(const Plan& plan, RowsById& rows, std::vector<std::string>& notes) {
   const bool certifies = !plan.study.solutions.empty();
+  const std::string references = reference_hash(plan.study);
+  long others = 0;
   for (const auto& cell : plan.cells) {
     const auto row = rows.find(cell.id);
     if (row == rows.end()) continue;
+    if (row->second.value("reference_hash", references) != references) {
+      rows.erase(row);
+      ++others;
+      continue;
+    }
     row->second.erase("scene");
     row->second.update(place_of(cell));
     if (cell.peer) continue;
@@ -159,6 +171,9 @@ void match_extras(const Plan& plan, RowsById& rows) {
     if (!certifies) row->second.erase("certificate");
     if (uncertified || (plan.study.budget_copies > 0 && copies != plan.study.budget_copies)) rows.erase(row);
   }
+  if (others > 0)
+    notes.push_back(fmt::format(R"({} of another "reference" or "errors" of the study: these cells run again)",
+                                others == 1 ? "1 row is" : fmt::format("{} rows are", others)));
 }
 
 struct Tally {
@@ -342,16 +357,17 @@ void note_disagreements(const RowsById& rows, std::ostream& log) {
   for (const auto& sentence : disagreements(all)) log << "note: " << printable(sentence) << '\n';
 }
 
-StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const Listener& listener, MeshFiles& meshes) {
+StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const Listener& listener, MeshFiles& meshes,
+                       const Caller& caller) {
+  const std::string elsewhere = caller.directory + " writes to another directory";
   if (holds(plan.directory, "result.json"))
-    throw InputFault(plan.directory.string() + ": holds the result of a run; -o DIR writes to another directory");
+    throw InputFault(plan.directory.string() + ": holds the result of a run; " + elsewhere);
   const OutputFolder folder(plan.directory, study_files());
   if (!arguments.restart) check_records(plan.directory);
   if (const auto found = read_rows(plan.directory).rows.size(); found > 0 && !arguments.resume && !arguments.restart)
-    throw InputFault(
-        fmt::format("{}: holds {} finished cells; --resume keeps those of this study and runs what is "
-                    "missing, --restart deletes them, -o DIR writes to another directory",
-                    plan.directory.string(), found));
+    throw InputFault(fmt::format(
+        "{}: holds {} finished cells; {} keeps those of this study and runs what is missing, {} deletes them, {}",
+        plan.directory.string(), found, caller.resume, caller.restart, elsewhere));
   if (arguments.restart)
     remove_outputs(plan.directory, {"results.jsonl", "timings.jsonl", "study.json", "picture.json"});
   json described = description(plan, arguments, meshes);
@@ -360,7 +376,7 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
   std::vector<std::string> notes;
   const InterruptNote note_of_interrupt(described["command"]);
   RowsById rows = resume_rows(plan.directory, plan.ids, notes);
-  match_extras(plan, rows);
+  match_extras(plan, rows, notes);
   if (const auto others = rows_of_other_shards(plan, rows); others > 0)
     notes.push_back(
         fmt::format("{} row(s) of this study that are not of shard {} stay as they are", others, plan.shard.text()));
@@ -371,12 +387,15 @@ StudyOutcome carry_out(const Plan& plan, const StudyArguments& arguments, const 
   folder.check();
   take_timings(plan.directory, listener.log, rows);
   write_rows(plan.directory, plan.ids, rows);
-  const auto recorded =
-      std::count_if(plan.cells.begin(), plan.cells.end(), [&](const auto& cell) { return rows.count(cell.id) > 0; });
+  std::vector<std::string> ids;  // of the shard
+  for (const auto& cell : plan.cells) ids.push_back(cell.id);
+  const auto recorded = std::ranges::count_if(ids, [&](const auto& id) { return rows.count(id) > 0; });
+  auto broken = refuted(ids, rows);
   note_disagreements(rows, listener.log);
   rows.clear();  // the report reads them again, and not all of each
   write_report(plan.directory);
-  return {plan.directory, std::ssize(plan.cells), tally.run, tally.failed, std::ssize(plan.cells) - recorded};
+  return {plan.directory, std::ssize(plan.cells),     tally.run,
+          tally.failed,   std::ssize(ids) - recorded, std::move(broken)};
 }
 
 }  // namespace
@@ -395,7 +414,7 @@ std::optional<StudyOutcome> run_study(const StudyArguments& arguments, std::ostr
   const auto plan = make_plan(arguments, meshes, diagnostics);
   if (!plan) return std::nullopt;
   log << diagnostics.notes_text();
-  return carry_out(*plan, arguments, {log, on_run}, meshes);
+  return carry_out(*plan, arguments, {log, on_run}, meshes, diagnostics.caller());
 }
 
 }  // namespace stickslip

@@ -24,10 +24,11 @@ struct StudyArguments {
 /// What a study left.
 struct StudyOutcome {
   std::filesystem::path directory;
-  long cells = 0;   ///< of the shard
-  long run = 0;     ///< of these, now
-  long failed = 0;  ///< of those that ran now, without a converged result; each has its row
-  long lost = 0;    ///< without a row: their processes were ended from outside
+  long cells = 0;                    ///< of the shard
+  long run = 0;                      ///< of these, now
+  long failed = 0;                   ///< of those that ran now, without a converged result; each has its row
+  long lost = 0;                     ///< without a row: their processes were ended from outside
+  std::vector<std::string> refuted;  ///< of the shard, a line for each certificate that does not hold
 };
 
 /// What the names of the files of a study are.

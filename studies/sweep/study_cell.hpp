@@ -1,6 +1,7 @@
 /// One cell of a study run and measured: cell to row.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -20,6 +21,9 @@ std::string program_version();
 /// The parts of a row that say where its cell stands in the study. The id does not know them: another study may have the
 /// same cell elsewhere.
 nlohmann::json place_of(const CellInput& cell);
+
+/// 16 digits over what the errors of a study are against, and which are recorded: of these the id does not know either.
+std::string reference_hash(const Study& study);
 
 /// A valid cell as input, and its problem. pre: read_study and expand found no fault.
 Input input_of(const CellInput& cell, MeshFiles& meshes);
@@ -75,6 +79,7 @@ class CellRunner {
   const std::vector<CellInput>& cells_;
   MeshFiles& meshes_;
   Variant variant_;
+  std::map<std::string, ReferenceValues> overkill_;  ///< what variants may share, by the id of the reference's cell
   BudgetRunner budgets_;
   long runs_ = 0;
 };

@@ -41,9 +41,10 @@ struct MethodSweep {
 struct Reference {
   enum class Kind { analytic, values, method, overkill };
   Kind kind = Kind::analytic;
-  nlohmann::json entry;  ///< as given
-  MethodSweep method;    ///< method, overkill (then monolithic_al): one value each
-  int refine = 0;        ///< overkill: levels finer than the cell
+  nlohmann::json entry;           ///< as given
+  MethodSweep method;             ///< method, overkill (then monolithic_al): one value each
+  int refine = 0;                 ///< overkill: levels finer than the cell or, with `meshes`, than these
+  std::vector<Knob> meshes = {};  ///< overkill: values of meshes, one each, that all cells have in place of their own
 };
 
 /// What another program found for a scene, or for one of its variants (docs/verify.md).

@@ -21,6 +21,8 @@ std::optional<MethodSweep> read_method_sweep(const JsonNode&, OptionLists);
 /// The methods of a study; where it lists none, the one of its scene.
 std::vector<MethodSweep> read_methods(const JsonNode& study, const std::optional<JsonNode>& scene);
 std::vector<Variation> read_vary(const JsonNode&, const nlohmann::json& scene);
+/// Values of the meshes of bodies, one each.
+std::vector<Knob> read_meshes(const JsonNode&, const nlohmann::json& scene);
 std::vector<PlacedValue> read_levels(const JsonNode&);
 std::vector<Reference> read_references(const JsonNode&, const nlohmann::json& scene);
 /// Solutions of other programs, whose files are looked for beside the study's `file`.

@@ -90,7 +90,7 @@ json answer_of(const Simulation& simulation, int& code) {
     if (session.on_step) session.on_step(done_steps, steps);
     if (session.is_cancelled) throw Cancelled{done_steps, steps};
   });
-  json answer = {{"result", result_json(result, canonical_text(simulation.input))},
+  json answer = {{"result", result_json(simulation, result)},
                  {"scales", scales_json(result)},
                  {"picture", picture_of(result, every)}};
   code = is_converged(result.status()) ? done : not_solved;

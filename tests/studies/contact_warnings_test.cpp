@@ -176,6 +176,18 @@ TEST(ContactWarnings, TellToTurnAPolylineOrAPlaneRound) {
   EXPECT_THAT(plane[0].remedy, HasSubstr("turn the normal of the plane round"));
 }
 
+/// The obstacle is right, and the slave is the side that faces away from it.
+TEST(ContactWarnings, TellOfASlaveOnTheFarSideOfItsBody) {
+  const json plane = {{"plane", {{"point", {0, 0}}, {"normal", {0, 1}}}}};
+  const json side = {{"on", "b.left"}, {"move", {{"x", 0}, {"y", 0}}}};
+  json scene = block_on_ground(plane, side);
+  scene["contacts"]["s"]["slave"] = "b.top";
+  const auto found = of_code(run(scene), WarningCode::turned_surface);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].text, HasSubstr("it is the far side of the body"));
+  EXPECT_THAT(found[0].remedy, testing::StartsWith("take the side of this body that faces "));
+}
+
 TEST(ContactWarnings, TellOfATurnedPolylineWhereARunFails) {
   json scene = block_on_ground({{"polyline", {{"points", {{2, 0}, {0, 0}, {-2, 0}}}}}},
                                {{"on", "b.left"}, {"move", {{"x", 0}}}});

@@ -215,9 +215,10 @@ def check_print(browser):
 
 def check_paper(found):
     """LaTeX for one column and for two, and a chart of that width with its legend."""
-    check("LaTeX", "\\setlength{\\linewidth}{85mm}" in found["code"] and "\\begin{figure}" in found["code"] and
+    check("LaTeX", "\\ifdim\\linewidth>85mm \\setlength{\\linewidth}{85mm}\\fi" in found["code"] and "\\begin{figure}" in found["code"] and
           "\\input{figures/enforcement-responses-against-seconds.pgf}" in found["code"], found["code"])
-    check("LaTeX of two columns", "\\begin{figure*}" in found["wide"], found["wide"])
+    check("LaTeX of two columns", "\\begin{figure*}" in found["wide"] and
+          found["wide"].count("\\begin{minipage}{.49\\linewidth}") == 2 and "minipage" not in found["code"], found["wide"])
     check("SVG", 'width="170mm"' in found["svg"] and "role-legend" in found["svg"] and "Uzawa AL" in found["svg"], found["svg"])
 
 

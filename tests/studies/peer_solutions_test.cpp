@@ -169,6 +169,38 @@ TEST_F(PeerSolutions, ThatCannotBeReadAreFaultsOfTheStudy) {
   EXPECT_THAT(faults(study_with(json::object())), HasSubstr("/solutions: is {}; must be a list"));
 }
 
+TEST_F(PeerSolutions, ThatAreNotAsTheyShouldBeAreToldWithTheirPlace) {
+  const auto fault_of = [&](const char* pointer, const json& value) {
+    json wrong = peer_;
+    wrong[json::json_pointer(pointer)] = value;
+    write("wrong.json", wrong);
+    return faults(study_with({{{"name", "Other"}, {"file", "wrong.json"}}}));
+  };
+  for (const auto& [pointer, value, words] :
+       {std::tuple{"/accuracy", json("good"), "/accuracy: is \"good\"; must be a number >= 0"},
+        std::tuple{"/acuracy", json(1e-4), "/acuracy: unknown key \"acuracy\"; did you mean \"accuracy\"?"},
+        std::tuple{"/increments/1/time", json("now"), "/increments/1/time: is \"now\"; must be a number"},
+        std::tuple{"/nodes/3", json("x"), "/nodes: is "}}) {
+    EXPECT_THAT(fault_of(pointer, value), HasSubstr(words));
+    EXPECT_THAT(fault_of(pointer, value), HasSubstr("wrong.json:1:"));
+  }
+}
+
+TEST_F(PeerSolutions, ThatDoNotFitTheMeshAreToldWithTheirPlace) {
+  const json own = json::parse(R"({"scene": {}, "mesh": {"nodes": [[0, 0], [1, 0]], "bodies": {}}})");
+  const auto pointer_of = [&](const json& solution) {
+    try {
+      certificate_of_peer(own, solution);
+    } catch (const SolutionFault& fault) {
+      return fault.pointer;
+    }
+    return std::string("no fault");
+  };
+  EXPECT_EQ(pointer_of({{"nodes", {{0, 0}, {1000, 0}}}, {"increments", json::array()}}), "/nodes/1");
+  EXPECT_EQ(pointer_of({{"nodes", {{0, 0}, {1, 0}}}, {"increments", {{{"time", 1}, {"displacement", {0, 0, 0}}}}}}),
+            "/increments/0/displacement");
+}
+
 TEST_F(PeerSolutions, ThatAreNoJsonAreToldWithTheirPlace) {
   std::ofstream(folder_ / "torn.json") << "{\n \"schema\": \"stickslip_solution\",\n \"increments\": [{\"time\": 1,}]";
   try {

@@ -63,6 +63,7 @@ class Arguments(unittest.TestCase):
         for call, words in (
                 (lambda: stickslip.run(STOP, set={"/time/end": -1}), "set /time/end=-1: "),
                 (lambda: stickslip.run(STOP, method="magic"), "method magic: "),
+                (lambda: stickslip.run(STOP, method="penalty", set={"/method/uzawa_al/scale": 2}), "add method uzawa_al"),
                 (lambda: stickslip.run(SCENES / "slider.json", set={"mu": 0.1}),
                  "the parameter mu is /contacts/sole/friction")):
             self.refused(stickslip.InputError, call, words)

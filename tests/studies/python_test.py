@@ -395,6 +395,35 @@ class Surroundings(unittest.TestCase):
             self.assertEqual(written, result.document)
             self.assertTrue((pathlib.Path(folder) / "new" / "fields.pvd").exists())
 
+    def test_a_run_is_read_back_from_its_folder(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for scene in ("slider.json", "press_fit.json"):
+                ran = stickslip.run(SCENES / scene, folder=folder)
+                read = stickslip.load_run(folder)
+                self.assertEqual((read.status, read.title, read.method), (ran.status, ran.title, ran.method))
+                self.assertEqual(list(read.parameters.items()), list(ran.parameters.items()))
+                self.assertEqual(list(read.elements), list(ran.elements))
+                np.testing.assert_array_equal(read.times, ran.times)
+                np.testing.assert_array_equal(read.coordinates, ran.coordinates)
+                for name, values in ran.responses.items():
+                    np.testing.assert_array_equal(read.responses[name], values)
+                    np.testing.assert_array_equal(read.jacobian(name), ran.jacobian(name))
+                for step in range(len(ran.times)):
+                    np.testing.assert_array_equal(read.displacement(step), ran.displacement(step))
+                for contact in ran.contacts:
+                    np.testing.assert_array_equal(read.contact(contact)["nodes"], ran.contact(contact)["nodes"])
+                    np.testing.assert_array_equal(read.contact(contact)["traction"], ran.contact(contact)["traction"])
+                self.assertRaisesRegex(ValueError, "as fields", read.displacement_derivative, list(ran.parameters)[0])
+            older = json.loads((pathlib.Path(folder) / "result.json").read_text())
+            del older["parameter_order"]
+            (pathlib.Path(folder) / "result.json").write_text(json.dumps(older))
+            (pathlib.Path(folder) / "solution.json").unlink()
+            read = stickslip.load_run(folder)
+            self.assertEqual(dict(read.parameters), dict(ran.parameters))
+            self.assertRaisesRegex(ValueError, "there is no solution.json", read.displacement)
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertRaisesRegex(stickslip.InputError, "there is no result.json", stickslip.load_run, folder)
+
     def test_a_folder_that_cannot_be_is_refused_before_the_run(self):
         with tempfile.NamedTemporaryFile() as file, self.assertRaises(stickslip.InputError) as caught:
             stickslip.run(plate(20, 100000), folder=pathlib.Path(file.name) / "below_a_file")  # minutes

@@ -108,6 +108,18 @@ TEST_F(ReportCurves, JoinsOneCurveAMethodAlongItsSweptKnob) {
   EXPECT_EQ(shapes.size(), 3u);  // apart in grey too
 }
 
+TEST_F(ReportCurves, RowsHoldWhatTheirWorkIsMadeOf) {
+  record(description(), three_methods());
+  for (const Of of : {Of::responses, Of::sensitivities}) {
+    const auto figure = report::work_precision(study(), Against::same_mesh, of);
+    for (const json& row : figure->rows) {
+      const double counts = row["factorizations"], weighed = row["backsolves"], r = row["r"];
+      EXPECT_NEAR(r, 0.1, 1e-15);
+      EXPECT_DOUBLE_EQ(row["work"], counts + r * weighed);
+    }
+  }
+}
+
 TEST_F(ReportCurves, KeepsOtherKnobsApartAsCurvesOfTheirOwn) {
   std::vector<json> cells;
   for (const double scale : {1, 10})
@@ -311,6 +323,8 @@ TEST_F(ReportCurves, ShowsTheHistoryOfTheHardestStep) {
   for (const auto& row : figure->rows) ++iterations[row["label"]];
   EXPECT_EQ(iterations.at("Penalty stiffness=1000"), 5);
   EXPECT_EQ(iterations.at("Penalty stiffness=1e5"), 3);
+  EXPECT_THAT(figure->text, HasSubstr("They are step 1, t = 1 ("));
+  EXPECT_THAT(figure->text, HasSubstr("; step 2, t = 5 (1 run); step 3, t = 3 (1 run)."));
 }
 
 /// Meshes that are varied are a series by their unknowns; what varies beside them is chosen.

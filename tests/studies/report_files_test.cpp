@@ -146,6 +146,20 @@ TEST_F(ReportFiles, ChartsCarryWhatTheyNeed) {
   EXPECT_THAT(report::to_csv(figure->rows), HasSubstr(",option,"));
 }
 
+/// A long title is in lines that fit into a column.
+TEST_F(ReportFiles, TitlesOfNarrowChartsStayInside) {
+  record(description(), three_methods());
+  auto figure = report::work_precision(study(), report::Against::same_mesh, report::Of::responses);
+  figure->charts.front().x.title = "penalty stiffness or AL scale (multiple of the local nodal stiffness)";
+  const auto svg = [&](double width) {
+    return report::draw_plot(*figure, figure->charts.front(), width)->inline_svg();
+  };
+  EXPECT_THAT(svg(report::two_columns),
+              HasSubstr(">penalty stiffness or AL scale (multiple of the local nodal stiffness)<"));
+  EXPECT_THAT(svg(report::one_column), HasSubstr(">penalty stiffness or AL scale (multiple of the local<"));
+  EXPECT_THAT(svg(report::one_column), HasSubstr(">nodal stiffness)<"));
+}
+
 /// The value at the end of one line stands on no other line where it has another place.
 TEST_F(ReportFiles, ValuesAtTheEndsOfLinesStandBesideLines) {
   report::Figure figure;

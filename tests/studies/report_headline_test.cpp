@@ -150,8 +150,10 @@ TEST_F(ReportHeadline, NamesWhatTheDiscretisationErrorIsAgainst) {
   json study_json = description();
   const json method = {{"method", {{"monolithic_al", json::object()}}}}, fine = {{"overkill", {{"refine", 2}}}};
   const json closed = {{"analytic", "hertz_line"}}, given = {{"values", {{"press", 9.9}}}};
+  const json file = {{"overkill", {{"vary", {{"/bodies/foot/mesh/gmsh", "fine.msh"}}}, {"refine", 1}}}};
   for (const auto& [references, words] :
        {std::pair{json{method, closed}, "the closed form"}, std::pair{json{method, fine}, "the finer mesh"},
+        std::pair{json{method, file}, "the common mesh (fine.msh, 1 level finer)"},
         std::pair{json{given}, "the given values"}, std::pair{json{closed, fine}, "the references"}}) {
     study_json["reference"] = references;
     record(study_json, three_methods());

@@ -132,7 +132,7 @@ TEST_F(ReportNumbers, SaysOfTheSceneWhatHoldsForEveryMethod) {
 
 TEST_F(ReportNumbers, TablesSayOnceWhatHoldsInEveryRow) {
   report::Table table{{"method", "cutbacks", "error"}, {{"a", "0", "1"}, {"b", "0", "2"}}, {}};
-  EXPECT_EQ(report::take_out_constant_columns(table), "In every row: cutbacks 0.");
+  EXPECT_EQ(report::take_out_constant_columns(table), "The same in every row: cutbacks 0.");
   EXPECT_THAT(table.header, testing::ElementsAre("method", "error"));
   EXPECT_THAT(table.rows[1], testing::ElementsAre("b", "2"));
 }

@@ -97,6 +97,28 @@ TEST_F(StudyCell, ErrorsAgainstAFinerMeshFallWithTheMesh) {
   }
 }
 
+/// The errors are differences of the responses of each mesh to those of one run.
+TEST_F(StudyCell, MeshesCanHaveOneReferenceThatIsRunOnce) {
+  const char* const mesh = "/bodies/block/mesh/box/cells";
+  const auto [study, cells] =
+      read(block_scene(), {{"methods", {{{"monolithic_al", json::object()}}}},
+                           {"vary", {{mesh, {{4, 2}, {6, 3}, {16, 8}}}}},
+                           {"reference", {{{"overkill", {{"vary", {{mesh, {8, 4}}}}, {"refine", 1}}}}}}});
+  ASSERT_EQ(cells.size(), 3u);
+  CellRunner runner(study, cells, meshes_);
+  std::vector<json> rows;
+  for (std::size_t i = 0; i < cells.size(); ++i) rows.push_back(runner.row(i));
+  EXPECT_EQ(runner.runs(), 4);
+  const double exact = rows[2]["responses"]["shift"], exact_derivative = rows[2]["sensitivities"]["shift"]["E"];
+  for (const json& row : rows) {
+    const json& errors = row["errors"]["discretization"];
+    EXPECT_NEAR(errors["response:shift"], std::abs(row["responses"]["shift"].get<double>() / exact - 1), 1e-12);
+    EXPECT_NEAR(errors["sensitivity:shift/E"],
+                std::abs(row["sensitivities"]["shift"]["E"].get<double>() / exact_derivative - 1), 1e-12);
+  }
+  EXPECT_GT(rows[0]["errors"]["discretization"]["response:shift"], 1e-4);  // a coarse mesh of a stout block
+}
+
 TEST_F(StudyCell, RowsHoldTheWarningsOfTheirRun) {
   json scene = block_scene();
   scene["contacts"]["sole"]["friction"] = 50;

@@ -355,15 +355,27 @@ def certified(work):
     run("study", plain, "-o", directory, "--resume")
     if rows(directory) != without:
         sys.exit("certificates that are no longer asked for stay")
+    slid = json.loads((work / "peer" / "solution.json").read_text())
+    for increment in slid["increments"]:
+        increment["displacement"] = [1.01 * u for u in increment["displacement"]]
+    (work / "slid.json").write_text(json.dumps(slid))
+    with_peer.write_text(with_peer.read_text().replace("peer/solution.json", "slid.json"))
+    for command in (("study", with_peer, "-o", directory, "--resume"), ("study", with_peer, "-o", directory, "--resume"),
+                    ("merge", directory, "-o", work / "certified_merged")):
+        said = run(*command, check=False)
+        if said.returncode != 3 or "Peer: its certificate does not hold: " not in said.stderr:
+            sys.exit(f"{command}: a certificate that does not hold: exit code {said.returncode}\n{said.stderr}")
     print("certified: with a solution of another program, and without again", flush=True)
 
 
 def moved(work):
     """A study that is edited and resumed keeps the runs that it still asks for; each row then says where its cell stands
-    in the study as it is now."""
+    in the study as it is now. Against another reference its errors are others: it runs again."""
     path, directory, anew = work / "moved.study.json", work / "moved", work / "moved_anew"
     content = {"scene": "scene.json", "methods": [{"monolithic_al": {}}]}
-    friction = json.loads((work / "scene.json").read_text())["contacts"]["sole"]["friction"]
+    lines = (work / "scene.json").read_text().splitlines()
+    scene = json.loads("\n".join(line for line in lines if not line.lstrip().startswith("//")))
+    friction = scene["contacts"]["sole"]["friction"]
     path.write_text(json.dumps(content))
     run("study", path, "-o", directory)
     path.write_text(json.dumps({**content, "vary": {"/contacts/sole/friction": [friction / 2, friction]}}))
@@ -372,6 +384,12 @@ def moved(work):
         sys.exit(f"a run that a study still asks for was made again: {said}")
     run("study", path, "-o", anew)
     same(directory, anew, "edited, resumed")
+    path.write_text(json.dumps({**json.loads(path.read_text()), "reference": [{"method": {"penalty": {}}}]}))
+    said = run("study", path, "-o", directory, "--resume")
+    if " 2 run now" not in said.stdout or "2 rows are of another \"reference\"" not in said.stderr:
+        sys.exit(f"rows keep the errors against another reference: {said.stdout}{said.stderr}")
+    run("study", path, "-o", anew, "--restart")
+    same(directory, anew, "another reference, resumed")
 
 
 def main():

@@ -194,6 +194,21 @@ TEST_F(StudyReader, TakesAnOverkillReferenceFromAFinerMeshOfTheSameCell) {
   EXPECT_EQ(fine.vary, all.back().vary);
 }
 
+TEST_F(StudyReader, TakesOneOverkillReferenceForAllMeshes) {
+  const auto text =
+      edited(study_text, R"({"analytic": "hertz_line", "map": {"press": "force"}, "inputs": {"radius": 2}})",
+             R"({"overkill": {"vary": {"/bodies/block/mesh/box/cells": [6, 3]}, "refine": 2}})");
+  const auto all = cells(text);
+  const auto study = read(text);
+  ASSERT_EQ(all.back().refine, 1);
+  for (const CellInput* cell : {&all.front(), &all.back()}) {
+    const CellInput fine = reference_cell(*cell, study->references[0], "1.0", mesh_files_);
+    EXPECT_EQ(fine.document.root()["bodies"]["block"]["mesh"]["box"]["cells"], (nlohmann::json{6 * 4, 3 * 4}));
+    EXPECT_EQ(fine.document.root()["bodies"]["rod"]["mesh"]["line"]["cells"], 3 * 4);
+    EXPECT_EQ(fine.document.root()["contacts"]["sole"]["friction"], cell->vary.at("/contacts/sole/friction"));
+  }
+}
+
 TEST_F(StudyReader, SaysHowManyCellsAreLeftOutBecauseTheyEqualOthers) {
   const auto once = R"({"scene": "scene.json", "methods": [{"monolithic_al": {}}, {"penalty": {}}]})";
   EXPECT_EQ(cells(once, without_stiffness_parameter()).size(), 2u);

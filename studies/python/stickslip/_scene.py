@@ -2,7 +2,8 @@
 
 import json
 from difflib import get_close_matches
-from os import PathLike
+from os import PathLike, fsdecode
+from os.path import exists, join
 from typing import Any, Dict, List, Mapping, NoReturn, Optional, Union
 
 import numpy as np
@@ -113,6 +114,7 @@ class Result:
         self._displacement_derivatives = state["displacement_derivatives"]
         self._contacts = state["contacts"]
         self._document = state["document"]
+        self._left_out = state.get("left_out", {})
 
     @property
     def document(self) -> Dict[str, Any]:
@@ -193,10 +195,7 @@ class Result:
         it failed. IndexError if there is no such step, ValueError if it has no solution or its state was let go
         (`sensitivity/memory`).
         """
-        displacement = self._displacements[self._solved(step, iterate)]
-        if displacement is None:
-            raise ValueError('its state was let go: raise "memory" of "sensitivity", or ask "output" for its fields')
-        return displacement
+        return self._kept(self._displacements[self._solved(step, iterate)])
 
     def displacement_derivative(self, parameter: str) -> np.ndarray:
         """Derivative of the displacement of the last step by a parameter, (nodes, dimension).
@@ -207,7 +206,7 @@ class Result:
         if parameter in self._displacement_derivatives:
             return self._displacement_derivatives[parameter]
         if any(parameter in of for of in self.sensitivities.values()):
-            reason = self.message or 'adjoint mode has no derivatives of fields; use "mode": "direct"'
+            reason = self._left_out.get("derivatives") or self.message or 'adjoint mode has no derivatives of fields; use "mode": "direct"'
             raise ValueError(f"the derivatives were not found: {reason}")
         raise _no_name("parameter", parameter, self._displacement_derivatives)
 
@@ -224,13 +223,21 @@ class Result:
         slip : (points, tangents), of the last increment, along the same tangents
         area : (points,), tributary area; a force is the sum of traction times area
 
+        A result of `load_run` has `nodes` and `traction` alone.
+
         KeyError if there is no such contact, IndexError if there is no such step, ValueError if it has no
         solution.
         """
         _arguments.text(name, "name", "the name of a contact")
         if name not in self._contacts:
             raise _no_name("contact", name, self._contacts)
-        return self._contacts[name][self._solved(step, iterate)]
+        return self._kept(self._contacts[name][self._solved(step, iterate)])
+
+    def _kept(self, of_step: Any) -> Any:
+        if of_step is None:
+            raise ValueError(self._left_out.get("states", 'its state was let go: raise "memory" of "sensitivity", or ask '
+                                                '"output" for its fields'))
+        return of_step
 
     def _solved(self, step: Any, iterate: Any) -> int:
         number = _arguments.step(step, len(self.times))
@@ -325,6 +332,78 @@ def run(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {},
     if check and not result.converged:
         raise NotConverged(result)
     return result
+
+
+def load_run(folder: Union[str, "PathLike[str]"]) -> Result:
+    """The result of a run that wrote result.json and solution.json into a folder: by `run` with `folder`, or on the
+    command line.
+
+    Times, responses, derivatives, objectives, warnings and displacements are those of the run, to the last digit. A
+    contact has `nodes` and `traction` alone. Derivatives of displacements are in the fields (.vtu), not here, and notes
+    are not kept. Without solution.json there are neither coordinates nor displacements. A run that failed is returned
+    with its status. Raises InputError if the folder has no result.
+    """
+    name = fsdecode(_arguments.path(folder, "folder"))
+    text = _read(name, "result.json")
+    if text is None:
+        has_study = exists(join(name, "study.json"))
+        _arguments.refuse(f"{name}: " + ("holds a study; load_study reads it" if has_study else "there is no result.json"))
+    try:
+        document, solution = json.loads(text), json.loads(_read(name, "solution.json") or "null")
+        return Result(_state_of(document, solution, text))
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        _arguments.refuse(f"{name}: result.json or solution.json is not as stickslip writes it: {error!r}")
+
+
+def _read(folder: str, file: str) -> Optional[str]:
+    try:
+        with open(join(folder, file), encoding="utf-8") as content:
+            return content.read()
+    except FileNotFoundError:
+        return None
+
+
+def _state_of(document: Dict[str, Any], solution: Optional[Dict[str, Any]], text: str) -> Dict[str, Any]:
+    """What a Result is made of, from the files of a run."""
+    steps = document["steps"]
+    times = np.array([step["time"] for step in steps])
+    parameters = document.get("parameters") or {}
+    order = document.get("parameter_order", list(parameters))
+    names = list((steps[0].get("responses") or steps[0]["iterate"]["responses"]) if steps else [])
+
+    def series(kind: str, *path: str) -> np.ndarray:
+        values = []
+        for step in steps:
+            value: Any = step.get(kind, {})
+            for key in path:
+                value = (value or {}).get(key)
+            values.append(value)
+        return np.array(values, dtype=float)  # None is NaN
+
+    failed = bool(steps) and "responses" not in steps[-1]
+    nodes = np.array(solution["mesh"]["nodes"], dtype=float) if solution else np.empty((0, 0))
+    increments = {of["time"]: of for of in solution["increments"]} if solution else {}
+    states = [increments.get(time) for time in times]
+    reason = document.get("solution", {}).get("left_out", "it is not there")
+    return {
+        "document": text, "notes": [], "times": times, "failed_at": float(times[-1]) if failed else None,
+        "parameters": {name: parameters[name] for name in order},
+        "responses": {name: series("responses", name) for name in names},
+        "sensitivities": {name: {by: series("sensitivities", name, by) for by in order} for name in names},
+        "coordinates": nodes,
+        "elements": {name: np.array(body["elements"]) for name, body in solution["mesh"]["bodies"].items()}
+        if solution else {},
+        "displacements": [of and np.array(of["displacement"], dtype=float).reshape(nodes.shape) for of in states],
+        "displacement_derivatives": {},
+        "contacts": {name: [of and _points(of["contacts"][name], nodes.shape[1]) for of in states]
+                     for name in (solution["mesh"]["contacts"] if solution else {})},
+        "left_out": {"derivatives": "the folder has them as fields (.vtu) alone",
+                     "states": "solution.json has no such state" if solution else f"there is no solution.json: {reason}"},
+    }
+
+
+def _points(contact: Dict[str, Any], dimension: int) -> Arrays:
+    return {"nodes": np.array(contact["nodes"]), "traction": np.reshape(contact["traction"], (-1, dimension))}
 
 
 def explain(scene: Scene, method: Optional[str] = None, set: Mapping[str, Any] = {}) -> str:

@@ -42,10 +42,12 @@ def study(study: Path, folder: Union[Path, None] = None, resume: bool = False, r
     if not 1 <= processes <= MOST_JOBS:
         _arguments.refuse(f"jobs is {processes}; must be 1 to {MOST_JOBS}")
     part = _arguments.text(shard, "shard", 'str, as "1/4"')
-    directory, lost = _stickslip.study(file, target, resume, restart, part, processes)
+    directory, lost, refuted = _stickslip.study(file, target, resume, restart, part, processes)
     if lost:
         warnings.warn(f"{lost} cells have no row: their processes were ended from outside; resume=True runs them again",
                       RuntimeWarning, stacklevel=2)
+    for line in refuted:
+        warnings.warn(line, RuntimeWarning, stacklevel=2)
     return load_study(directory)
 
 
@@ -69,9 +71,10 @@ def load_study(folder: Path) -> Table:
         Coulomb's law.
     factorizations, backsolves, newton, augmentations, ...
         Counts, equal on every machine.
-    work, sensitivity_work
-        In factorisations, of the solution alone and with its derivatives: counts, a back-solve weighed as measured in
-        this study.
+    r, work, sensitivity_work
+        `work` is factorizations - sensitivity_factorizations + r * backsolves, of the solution alone; `sensitivity_work`
+        is factorizations + r * (backsolves + sensitivity_backsolves). `r` is the time of a back-solve over that of a
+        factorisation, measured in this study.
     seconds, sensitivity_seconds, peak_memory_mb
         Of this machine; `sensitivity_seconds` are those of the solution and its derivatives together.
     curve, along
@@ -116,7 +119,7 @@ def _flat(cell: Dict[str, Any]) -> Row:
             out[f"{kind}:{name}"] = _number(value)
     cost = row.get("cost", {})
     out.update(cost.get("counts", {}))
-    for name in ("work", "sensitivity_work", "seconds", "sensitivity_seconds"):
+    for name in ("r", "work", "sensitivity_work", "seconds", "sensitivity_seconds"):
         out[name] = cell[name] if cost else float("nan")
     out["peak_memory_mb"] = cost.get("peak_memory_mb", float("nan"))
     out["curve"] = cell["curve"]

@@ -61,7 +61,7 @@ def tractions(result: Result, contact: Optional[str] = None, step: int = -1, ax:
 
 
 def derivative(result: Result, response: str, parameter: str, ax: Any = None) -> Any:
-    """A derivative over time. Where it has two sides it is no point of the curve: the curve has a gap, with a triangle for
+    """A derivative over time. If it has two sides at a step, the curve has a gap there, with a triangle for
     each side that has a derivative.
 
     KeyError if there is no such response or parameter.
