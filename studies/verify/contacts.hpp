@@ -29,7 +29,8 @@ class Contact {
         master_(scene, given, sides.at("slave"), sides.at("master"), segment),
         facets_(body_.in_space() ? Facets{} : facets_of(side_)),
         areas_(areas_of(scene, body_, side_)) {
-    if (body_.in_space() && !master_.rigid()) faces_.emplace(scene, scene.side(sides.at("master")));
+    if (body_.in_space() && !master_.rigid())
+      faces_.emplace(scene.points, scene.side(sides.at("master")).edges, master_.smooth, master_.corner, scene.finite);
     for (auto& [node, area] : areas_)
       if (side_.edges.empty() && body_.element == "bar") area = body_.area();
     std::map<int, Vec3> before;
@@ -55,6 +56,7 @@ class Contact {
     Field x = scene_.places(u);  // in the frame of the master
     for (Eigen::Index n = 0; n < x.cols() && scene_.finite; ++n) x.col(n) = master_.motion.back(x.col(n), time);
     master_.place_vertices(x);
+    if (faces_) faces_->place_nodes(x);
     last = std::exchange(touches, {});
     for (const auto& [node, area] : areas_) {
       Touch& touch = touches[node];
@@ -87,7 +89,7 @@ class Contact {
     if (given.contains("discretization")) return given["discretization"] == "segment";
     const std::string slave = sides.at("slave");
     const Json& obstacle = part(part(scene.json, "obstacles"), sides.at("master"));
-    return scene.finite && !given.contains("surface") && scene.body(slave).solid() &&
+    return scene.finite && scene.dimension == 2 && !given.contains("surface") && scene.body(slave).solid() &&
            !scene.side(slave).edges.empty() && (obstacle.empty() || obstacle.contains("polyline"));
   }
 
@@ -255,7 +257,9 @@ class Contact {
       const double way = touch.along - last.along;
       touch.slip = (master_.loop > 0 ? std::remainder(way, master_.loop) : way) * touch.tangent;
     } else {
-      touch.slip = touch.y - (on_curve ? master_.position(last.place) : last.y);
+      touch.slip = touch.y - (!on_curve ? last.y
+                              : faces_  ? faces_->position(last.place)
+                                        : master_.position(last.place));
     }
     if (scene_.finite) {  // from the last normal to this one the shortest way, as seen from the master
       const Mat3 now = motion.turn(time), before = motion.turn(last_time_);
