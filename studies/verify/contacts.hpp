@@ -261,12 +261,19 @@ class Contact {
                               : faces_  ? faces_->position(last.place)
                                         : master_.position(last.place));
     }
-    if (scene_.finite) {  // from the last normal to this one the shortest way, as seen from the master
-      const Mat3 now = motion.turn(time), before = motion.turn(last_time_);
-      touch.turned = now * Eigen::Quaterniond::FromTwoVectors(before.transpose() * last.normal, touch.normal).matrix() *
-                     before.transpose();
-      touch.normal = now * touch.normal;
-      touch.slip = now * touch.slip;
+    if (scene_.finite) {  // with what the master does at the last foot, then from normal to normal the shortest way
+      Mat3 turn = motion.turn(time) * motion.turn(last_time_).transpose();
+      touch.normal = motion.turn(time) * touch.normal;
+      touch.slip = motion.turn(time) * touch.slip;
+      if (faces_ && touch.place.patch >= 0) touch.frame = faces_->frame(touch.place);
+      if (faces_ && on_curve) {
+        const Eigen::JacobiSVD<Mat3> deformed(faces_->frame(last.place) * last.frame.inverse(),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+        const Vec3 stretch = deformed.singularValues();
+        turn = deformed.matrixU() * deformed.matrixV().transpose();
+        touch.unsure = (stretch[0] - stretch[2]) / (stretch[0] + stretch[2]);
+      }
+      touch.turned = Eigen::Quaterniond::FromTwoVectors(turn * last.normal, touch.normal).matrix() * turn;
     }
     touch.slip -= touch.normal.dot(touch.slip) * touch.normal;
     if (touch.faces) touch.gap += given.value("offset", 0.0);

@@ -30,6 +30,11 @@ class Faces {
   }
 
   Vec3 position(const Place& place) const { return jet(place.patch, {place.xi, place.eta}).col(0); }
+  /// y_s, y_t and n.
+  Mat3 frame(const Place& place) const {
+    const Mat3 y = jet(place.patch, {place.xi, place.eta});
+    return (Mat3() << y.rightCols<2>(), y.col(1).cross(y.col(2)).normalized()).finished();
+  }
 
   Foot foot(const Seeker& seeker) const {
     const auto& [node, x, outward, size] = seeker;
