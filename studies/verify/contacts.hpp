@@ -29,7 +29,8 @@ class Contact {
         master_(scene, given, sides.at("slave"), sides.at("master"), segment),
         facets_(body_.in_space() ? Facets{} : facets_of(side_)),
         areas_(areas_of(scene, body_, side_)) {
-    if (body_.in_space() && !master_.rigid()) faces_.emplace(scene, scene.side(sides.at("master")));
+    if (body_.in_space() && !master_.rigid())
+      faces_.emplace(scene.points, scene.side(sides.at("master")).edges, master_.smooth, master_.corner, scene.finite);
     for (auto& [node, area] : areas_)
       if (side_.edges.empty() && body_.element == "bar") area = body_.area();
     std::map<int, Vec3> before;
@@ -55,6 +56,7 @@ class Contact {
     Field x = scene_.places(u);  // in the frame of the master
     for (Eigen::Index n = 0; n < x.cols() && scene_.finite; ++n) x.col(n) = master_.motion.back(x.col(n), time);
     master_.place_vertices(x);
+    if (faces_) faces_->place_nodes(x);
     last = std::exchange(touches, {});
     for (const auto& [node, area] : areas_) {
       Touch& touch = touches[node];
@@ -87,7 +89,7 @@ class Contact {
     if (given.contains("discretization")) return given["discretization"] == "segment";
     const std::string slave = sides.at("slave");
     const Json& obstacle = part(part(scene.json, "obstacles"), sides.at("master"));
-    return scene.finite && !given.contains("surface") && scene.body(slave).solid() &&
+    return scene.finite && scene.dimension == 2 && !given.contains("surface") && scene.body(slave).solid() &&
            !scene.side(slave).edges.empty() && (obstacle.empty() || obstacle.contains("polyline"));
   }
 
@@ -255,14 +257,23 @@ class Contact {
       const double way = touch.along - last.along;
       touch.slip = (master_.loop > 0 ? std::remainder(way, master_.loop) : way) * touch.tangent;
     } else {
-      touch.slip = touch.y - (on_curve ? master_.position(last.place) : last.y);
+      touch.slip = touch.y - (!on_curve ? last.y
+                              : faces_  ? faces_->position(last.place)
+                                        : master_.position(last.place));
     }
-    if (scene_.finite) {  // from the last normal to this one the shortest way, as seen from the master
-      const Mat3 now = motion.turn(time), before = motion.turn(last_time_);
-      touch.turned = now * Eigen::Quaterniond::FromTwoVectors(before.transpose() * last.normal, touch.normal).matrix() *
-                     before.transpose();
-      touch.normal = now * touch.normal;
-      touch.slip = now * touch.slip;
+    if (scene_.finite) {  // with what the master does at the last foot, then from normal to normal the shortest way
+      Mat3 turn = motion.turn(time) * motion.turn(last_time_).transpose();
+      touch.normal = motion.turn(time) * touch.normal;
+      touch.slip = motion.turn(time) * touch.slip;
+      if (faces_ && touch.place.patch >= 0) touch.frame = faces_->frame(touch.place);
+      if (faces_ && on_curve) {
+        const Eigen::JacobiSVD<Mat3> deformed(faces_->frame(last.place) * last.frame.inverse(),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+        const Vec3 stretch = deformed.singularValues();
+        turn = deformed.matrixU() * deformed.matrixV().transpose();
+        touch.unsure = (stretch[0] - stretch[2]) / (stretch[0] + stretch[2]);
+      }
+      touch.turned = Eigen::Quaterniond::FromTwoVectors(turn * last.normal, touch.normal).matrix() * turn;
     }
     touch.slip -= touch.normal.dot(touch.slip) * touch.normal;
     if (touch.faces) touch.gap += given.value("offset", 0.0);

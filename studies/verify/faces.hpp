@@ -1,96 +1,183 @@
-/// Foot of a point on the faces of a master in space, triangles and bilinear quadrilaterals, at small strain: the
-/// closest of all places, found inside of each face and on each of its edges. Where several faces have it, the normal
-/// is the mean of theirs, of those that oppose the slave's side (core/README.md, Faces in space).
+/// Foot of a point on the faces of a master in space: the closest of all places, found inside of each patch, on each
+/// of its edges and at its corners (core/README.md, Faces in space).
+///
+///   (x - y) . y_s = (x - y) . y_t = 0,   n = y_s x y_t / |y_s x y_t|,   g = n . (x - y)
+///
+/// Where several patches have it: at finite strain each is extended over its edges, and that with the largest gap is
+/// faced; at small strain, of faces of the start, the normal is the mean of theirs, of those that oppose the slave's
+/// side.
 #pragma once
 
 #include "studies/verify/masters.hpp"
-#include "studies/verify/solids.hpp"
+#include "studies/verify/patches.hpp"
 
 namespace stickslip::verify {
 
 class Faces {
  public:
-  Faces(const Scene& scene, const Side& master) : points_(scene.points), faces_(master.edges) {
-    for (const auto& face : faces_)
-      for (std::size_t k = 0; k < face.size(); ++k) ++count_[edge_of(face, k)];
+  /// `X`: nodes at the start; `smooth`, `corner`: as a Patchwork has them.
+  Faces(const Field& X, const std::vector<Nodes>& faces, int smooth, double corner, bool finite)
+      : finite_(finite), patches_(Patchwork(X, faces, smooth, corner).patches) {
+    place_nodes(X);
+  }
+
+  void place_nodes(const Field& x) {
+    nets_.clear();
+    for (const auto& patch : patches_) {  // (differences are exact where a coordinate is one of all nodes)
+      const Vec3 first = x.col(patch.nodes[0]);
+      nets_.emplace_back(((x(Eigen::all, patch.nodes).colwise() - first) * patch.weigh).colwise() + first);
+    }
+  }
+
+  Vec3 position(const Place& place) const { return jet(place.patch, {place.xi, place.eta}).col(0); }
+  /// y_s, y_t and n.
+  Mat3 frame(const Place& place) const {
+    const Mat3 y = jet(place.patch, {place.xi, place.eta});
+    return (Mat3() << y.rightCols<2>(), y.col(1).cross(y.col(2)).normalized()).finished();
   }
 
   Foot foot(const Seeker& seeker) const {
-    std::vector<Near> near;
-    for (const auto& face : faces_) near.push_back(nearest(face, seeker.x));
-    const Near best = *std::ranges::min_element(near, {}, &Near::distance);
-    const double band = at_end * best.size;
-    std::erase_if(near, [&](const Near& at) { return (at.y - best.y).norm() > 2 * band; });
-    Foot foot{true, best.y};
-    const bool is_past = std::ranges::any_of(near, [&](const Near& at) { return is_past_border(at, seeker.x); });
-    std::erase_if(near, [&](const Near& at) { return seeker.outward.dot(at.normal) >= 0; });
-    if (near.empty() || is_past) return foot.away_from(seeker.x);
+    const auto& [node, x, outward, size] = seeker;
+    auto near = closest(x, finite_ ? outward : Vec3(0, 0, 0));
+    if (near.empty()) return {};
+    const Near first = near[0];
+    const bool faces = settle_on(near, x, outward);
+    if (!faces) return Foot{false, first.y, first.normal, 0, first.place}.away_from(x);
+    const Near& best = near[0];
+    const auto& [p, s, t] = best.place;
+    Foot foot{true, best.y, best.normal, best.gap, best.place};
+    const Eigen::VectorXd N = patches_[p].weigh * blend(patches_[p].sides(), Vec2(s, t)).col(0);
+    for (Eigen::Index k = 0; k < N.size(); ++k) foot.weights.emplace_back(patches_[p].nodes[k], -N[k]);
+    if (finite_) return foot;
     Vec3 normal = Vec3::Zero();
     for (const auto& at : near) normal += at.normal;
-    foot.normal = (normal.normalized() - seeker.outward.normalized()).normalized();  // the bisector of the two sides
-    for (std::size_t a = 0; a < near[0].face->size(); ++a)
-      foot.weights.emplace_back(near[0].face->at(a), -near[0].N[a]);
-    foot.gap = foot.normal.dot(seeker.x - foot.y);
+    foot.normal = (normal.normalized() - outward.normalized()).normalized();  // the bisector of the two sides
+    foot.gap = foot.normal.dot(x - foot.y);
     return foot;
   }
 
  private:
   struct Near {
-    const Nodes* face;
-    double distance, size;  ///< size: of the face, its longest edge
+    Place place;
     Vec3 y, normal;
-    Eigen::VectorXd N;
+    double gap, distance;
   };
 
-  static std::set<int> edge_of(const Nodes& face, std::size_t k) { return {face[k], face[(k + 1) % face.size()]}; }
-  Line line_of(const Nodes& face, std::size_t k) const {
-    return {points_.col(face[k]), points_.col(face[(k + 1) % face.size()])};
+  /// y, y_s, y_t.
+  Mat3 jet(int p, const Vec2& at) const {
+    Mat3 y = (nets_[p].colwise() - nets_[p].col(0)) * blend(patches_[p].sides(), at);
+    y.col(0) += nets_[p].col(0);
+    return y;
   }
-
-  /// The place (r, s) of a face.
-  Near place(const Nodes& face, const Vec3& at, const Vec3& x) const {
-    const Field X = points_(Eigen::all, face);
-    const Shape N = shape(face.size() == 3 ? "T3" : "Q4", at);
-    const Vec3 y = X * N.value, normal = (X * N.gradient.col(0)).cross(X * N.gradient.col(1));
+  Vec3 corner(int p, int j) const { return nets_[p].col(j % patches_[p].sides()); }
+  /// The longest edge of a patch.
+  double size(int p) const {
     double size = 0;
-    for (std::size_t k = 0; k < face.size(); ++k) size = std::max(size, line_of(face, k).tau.norm());
-    return {&face, (x - y).norm(), size, y, normal.normalized(), N.value};
+    for (int j = 0; j < patches_[p].sides(); ++j) size = std::max(size, (corner(p, j + 1) - corner(p, j)).norm());
+    return size;
   }
 
-  /// Where x - y is across the face, by the steps of Gauss and Newton from its middle; else on the nearest edge.
-  Near nearest(const Nodes& face, const Vec3& x) const {
-    const std::string kind = face.size() == 3 ? "T3" : "Q4";
-    const Field X = points_(Eigen::all, face), &corners = reference(kind).nodes;
-    Vec3 at = corners.rowwise().mean();
-    for (int k = 0; k < 100 && at.cwiseAbs().maxCoeff() < 2; ++k) {
-      const Shape N = shape(kind, at);
-      const Eigen::Matrix<double, 3, 2> slope = X * N.gradient.leftCols<2>();
-      at.head<2>() += (slope.transpose() * slope).inverse() * slope.transpose() * (x - X * N.value);
+  Near near(int p, const Vec2& at, const Vec3& x) const {
+    const Mat3 y = jet(p, at);
+    const Vec3 off = x - y.col(0), normal = y.col(1).cross(y.col(2)).normalized();
+    return {{p, at[0], at[1]}, y.col(0), normal, normal.dot(off), off.norm()};
+  }
+
+  /// Where x - y is across y in the directions D of (s, t): Newton's method; none where it does not end.
+  std::optional<Vec2> across(int p, Vec2 at, const Eigen::Matrix2Xd& D, const Vec3& x) const {
+    constexpr double h = 1e-4;  // of central differences, whose errors of 1e-8 slow down the last steps alone
+    for (int k = 0; k < 50 && at.cwiseAbs().maxCoeff() < 3; ++k) {
+      const Mat3 y = jet(p, at);
+      const Vec3 off = x - y.col(0);
+      const Eigen::MatrixXd slope = y.rightCols<2>() * D, metric = slope.transpose() * slope;
+      Eigen::MatrixXd bend = metric;
+      for (int i = 0; i < D.cols(); ++i)
+        bend.col(i) = ((jet(p, at + h * D.col(i)) - jet(p, at - h * D.col(i))).rightCols<2>() * D).transpose() * off;
+      const Eigen::LLT<Eigen::MatrixXd> exact(metric - bend / (2 * h)), safe(metric);
+      const Vec2 step = D * (exact.info() == Eigen::Success ? exact : safe).solve(slope.transpose() * off);
+      at += step * std::min(1.0, 0.5 / step.norm());
+      if (step.norm() < 1e-14) return at;
     }
-    const double most = kind == "T3" ? at.sum() : at.maxCoeff();
-    if (at.minCoeff() >= -at_end && most <= 1 + at_end) return place(face, at, x);
-    Near best{nullptr, infinity};
-    for (std::size_t k = 0; k < face.size(); ++k) {
-      const Vec3 from = corners.col(k), to = corners.col((k + 1) % face.size());
-      const Near on_edge = place(face, from + std::clamp(line_of(face, k).xi(x), 0.0, 1.0) * (to - from), x);
-      if (on_edge.distance < best.distance) best = on_edge;
+    return std::nullopt;
+  }
+
+  /// The nearest place of a patch, from several starts inside, and on each edge.
+  Near nearest(int p, const Vec3& x) const {
+    const int m = patches_[p].sides();
+    Vec2 middle = Vec2::Zero();
+    for (int j = 0; j < m; ++j) middle += corner_at(m, j) / m;
+    Near best{{}, {}, {}, 0, infinity};
+    const auto keep = [&](const std::optional<Vec2>& at) {
+      if (!at || from_edges(m, (*at)[0], (*at)[1]).minCoeff() < -at_end) return;
+      if (const Near found = near(p, *at, x); found.distance < best.distance) best = found;
+    };
+    keep(across(p, middle, Eigen::Matrix2d::Identity(), x));
+    for (int j = 0; j < m; ++j) {
+      const Vec2 from = corner_at(m, j), along = edge_along(m, j);
+      keep(from);
+      keep(across(p, (from + middle) / 2, Eigen::Matrix2d::Identity(), x));
+      for (const double u : {0.25, 0.75}) keep(across(p, from + u * along, along, x));
     }
     return best;
   }
 
-  /// Whether x projects past an edge that no other face has.
-  bool is_past_border(const Near& at, const Vec3& x) const {
-    for (std::size_t k = 0; k < at.face->size(); ++k) {
-      const Line line = line_of(*at.face, k);
-      const bool is_here = line.distance(at.y) <= at_end * at.size && count_.at(edge_of(*at.face, k)) == 1;
-      if (is_here && (x - at.y).dot(line.tau.cross(at.normal).normalized()) > 1e-6 * at.size) return true;
+  /// The closest place of all patches but those that look the way of a side, in each that has it, the best first. A
+  /// patch is in the box of its control points.
+  std::vector<Near> closest(const Vec3& x, const Vec3& outward) const {
+    std::vector<std::pair<double, int>> boxes;  // with their distance
+    for (int p = 0; p < std::ssize(patches_); ++p) {
+      const int m = patches_[p].sides();
+      const Vec3 low = nets_[p].rowwise().minCoeff(), high = nets_[p].rowwise().maxCoeff(),
+                 across = (corner(p, m - 2) - corner(p, 0)).cross(corner(p, m - 1) - corner(p, 1));
+      if (!(outward.dot(across) > 0)) boxes.emplace_back((x - x.cwiseMax(low).cwiseMin(high)).norm(), p);
+    }
+    std::ranges::sort(boxes);
+    std::vector<Near> near;
+    double least = infinity;
+    for (const auto& [distance, p] : boxes) {
+      if (distance > least + 2 * at_end * size(p)) break;
+      near.push_back(nearest(p, x));
+      least = std::min(least, near.back().distance);
+    }
+    std::ranges::stable_sort(near, {}, &Near::distance);
+    std::erase_if(near, [&](const Near& at) { return (at.y - near[0].y).norm() > 2 * at_end * size(at.place.patch); });
+    return near;
+  }
+
+  /// Whether x is past an edge of which the face beyond is none of those that are near.
+  bool is_past_border(const std::vector<Near>& near, const Near& here, const Vec3& x) const {
+    const auto& [p, s, t] = here.place;
+    const int m = patches_[p].sides();
+    for (int j = 0; j < m; ++j) {
+      const auto has_it = [&](const Near& at) {
+        const Nodes &face = patches_[at.place.patch].face, &own = patches_[p].face;
+        return std::ranges::count(face, own[j]) + std::ranges::count(face, own[(j + 1) % m]) == 2;
+      };
+      if (from_edges(m, s, t)[j] > at_end || std::ranges::count_if(near, has_it) > 1) continue;
+      const Vec3 along = jet(p, {s, t}).rightCols<2>() * edge_along(m, j);
+      if ((x - here.y).dot(along.cross(here.normal).normalized()) > 1e-6 * size(p)) return true;
     }
     return false;
   }
 
-  const Field& points_;
-  std::vector<Nodes> faces_;
-  std::map<std::set<int>, int> count_;  ///< of the faces at an edge
+  /// Keeps of the nearest places those that x faces, the best first; whether there is one. What is inside of the solid
+  /// by a patch is not where it is outside by a nearer one.
+  bool settle_on(std::vector<Near>& near, const Vec3& x, const Vec3& outward) const {
+    if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(near, at, x); })) return false;
+    if (!finite_) std::erase_if(near, [&](const Near& at) { return outward.dot(at.normal) >= 0; });
+    if (!finite_) return !near.empty();
+    for (auto& at : near)
+      if (const auto beyond = across(at.place.patch, {at.place.xi, at.place.eta}, Eigen::Matrix2d::Identity(), x))
+        at = this->near(at.place.patch, *beyond, x);
+    std::ranges::stable_sort(near, std::greater<>{}, &Near::gap);
+    if (near[0].gap >= 0 || outward.isZero()) return !near.empty();
+    auto all = closest(x, Vec3::Zero());
+    return !settle_on(all, x, Vec3::Zero()) || all[0].gap <= 0;
+  }
+
+  bool finite_;
+  std::vector<FacePatch> patches_;
+  std::vector<Field> nets_;  ///< control points
 };
 
 }  // namespace stickslip::verify

@@ -35,7 +35,7 @@ struct Patch {
 
 struct Place {
   int patch = -1;  ///< -1: none
-  double xi = 0;
+  double xi = 0, eta = 0;
 };
 
 struct Foot {
@@ -60,12 +60,14 @@ struct Seeker {
 /// traction and the springs are of whoever solved it.
 struct Touch : Foot {
   int node = -1;
-  double area = 0;                                       ///< of the start, on which its traction acts
-  Vec3 slip = Vec3::Zero();                              ///< of this increment, across the normal
-  bool slip_known = false;                               ///< false: it faced nothing before
-  Mat3 turned = Mat3::Identity();                        ///< of directions across the normal in this increment
-  double opening = 0;                                    ///< of the gap in this increment
-  Vec3 carried = Vec3::Zero();                           ///< motion of an obstacle's surface there in this increment
+  double area = 0;                 ///< of the start, on which its traction acts
+  Vec3 slip = Vec3::Zero();        ///< of this increment, across the normal
+  bool slip_known = false;         ///< false: it faced nothing before
+  Mat3 turned = Mat3::Identity();  ///< of directions across the normal in this increment
+  double unsure = 0;               ///< sine of what lines on a master that deforms turn by, more or less than that
+  Mat3 frame = Mat3::Identity();   ///< y_s, y_t and n, on a master in space that deforms
+  double opening = 0;              ///< of the gap in this increment
+  Vec3 carried = Vec3::Zero();     ///< motion of an obstacle's surface there in this increment
   Vec3 relative = Vec3::Zero(), tangent = Vec3::Zero();  ///< w of small strain; m of segments
   double along = 0;                                      ///< Z of segments
   Weights slave = {};                                    ///< weights of the slave's nodes, without those of the master
@@ -88,8 +90,9 @@ class Master {
         itself_(slave == master) {
     const Json surface = contact.value("surface", Json(scene.finite && !integrated ? "smooth" : "faceted"));
     const std::string kind = surface.is_object() ? surface.value("smooth", "catmull_rom") : surface.get<std::string>();
-    smooth_ = kind == "faceted" ? 0 : kind == "b_spline" ? 2 : 1;
-    frozen_ = !scene.finite && smooth_ == 0 && !contact.contains("between") && !itself_;
+    smooth = kind == "faceted" ? 0 : kind == "b_spline" ? 2 : 1;
+    if (surface.is_object()) corner = surface.value("corner", corner);
+    frozen_ = !scene.finite && smooth == 0 && !contact.contains("between") && !itself_;
     if (!rigid() && scene.dimension == 2) facets = facets_of(scene.side(master));
     const Json points = part(part(obstacle, "polyline"), "points");  // the solid is on its right
     at.resize(3, std::ssize(points));
@@ -98,7 +101,7 @@ class Master {
       facets.push_back({{v + 2 == std::ssize(points) && points.front() == points.back() ? 0 : v + 1, v}});
     for (const auto& [ends, edge] : facets) patches.push_back({{ends[0], ends[0], ends[1], ends[1]}});
     place_vertices(scene.points);
-    link(surface.is_object() ? surface.value("corner", 30.0) : 30.0);
+    link();
     number_nodes();
   }
 
@@ -172,15 +175,17 @@ class Master {
   }
 
   std::vector<Patch> patches;
-  Facets facets;    ///< those of the patches
-  Field at;         ///< where nodes are, or the points of an obstacle's polyline
-  double loop = 0;  ///< length of a closed master; 0: it is open
-  Json obstacle;    ///< empty: the master deforms
-  Motion motion;    ///< of an obstacle
+  Facets facets;       ///< those of the patches
+  Field at;            ///< where nodes are, or the points of an obstacle's polyline
+  double loop = 0;     ///< length of a closed master; 0: it is open
+  Json obstacle;       ///< empty: the master deforms
+  Motion motion;       ///< of an obstacle
+  int smooth = 0;      ///< 0: facets, 1: Catmull-Rom, 2: B-spline
+  double corner = 30;  ///< degrees by which facets turn at most where they are smooth
 
  private:
   /// Neighbours of the patches, corners, and lengths.
-  void link(double corner) {
+  void link() {
     std::map<int, int> starts;
     for (int p = 0; p < std::ssize(patches); ++p) starts[patches[p].vertex[1]] = p;
     for (int p = 0; p < std::ssize(patches); ++p) {
@@ -190,7 +195,7 @@ class Master {
       Patch& other = patches[patch.beside[1] = starts[patch.vertex[2]]];
       other.beside[0] = p;
       const double cosine = line_of(p).tau.normalized().dot(line_of(patch.beside[1]).tau.normalized());
-      if (smooth_ == 0 || cosine < std::cos(corner * std::numbers::pi / 180)) continue;
+      if (smooth == 0 || cosine < std::cos(corner * std::numbers::pi / 180)) continue;
       patch.vertex[3] = other.vertex[2];
       other.vertex[0] = patch.vertex[1];
     }
@@ -235,7 +240,7 @@ class Master {
         Eigen::Matrix4d{{1, 4, 1, 0}, {-3, 0, 3, 0}, {3, -6, 3, 0}, {-1, 3, -3, 1}} / 6};
     const double s = place.xi;
     const Eigen::Vector4d powers[3] = {{1, s, s * s, s * s * s}, {0, 1, 2 * s, 3 * s * s}, {0, 0, 2, 6 * s}};
-    Eigen::Vector4d N = shapes[smooth_].transpose() * powers[derivative];
+    Eigen::Vector4d N = shapes[smooth].transpose() * powers[derivative];
     for (const auto& [end, near, far] : {std::array{0, 1, 2}, {3, 2, 1}}) {  // a vertex that is missing is 2 y_1 - y_2
       if (patches[place.patch].goes_on(end == 3)) continue;
       N[near] += 2 * N[end];
@@ -265,7 +270,7 @@ class Master {
       const Line line = line_of(p);
       if (line.distance(x) > least + 2 * line.tau.norm() || !may_face(seeker, p)) continue;
       Place place{p, std::clamp(line.xi(x), 0.0, 1.0)};
-      for (int k = 0; k < 50 && smooth_ > 0; ++k) {  // Newton's method for (x - y) . y' = 0
+      for (int k = 0; k < 50 && smooth > 0; ++k) {  // Newton's method for (x - y) . y' = 0
         const Vec3 off = x - position(place), slope = position(place, 1);
         const double step = off.dot(slope) / std::abs(slope.squaredNorm() - off.dot(position(place, 2)));
         const double last = std::exchange(place.xi, std::clamp(place.xi + std::clamp(step, -0.5, 0.5), 0.0, 1.0));
@@ -351,7 +356,6 @@ class Master {
   };
 
   const Scene& scene_;
-  int smooth_ = 0;                        ///< 0: facets, 1: Catmull-Rom, 2: B-spline
   bool itself_ = false, frozen_ = false;  ///< frozen: facets of the start, at small strain
   std::map<int, Wall> walls_;
 };

@@ -25,7 +25,9 @@ constexpr Law elements{"elements", 0, "an element may not be turned inside out"}
     tension{"tension", 1e-8, "of T: nothing pulls"},
     complementarity{"complementarity", 1e-6, "of L: what presses is closed, as gaps are"},
     cone{"cone", 1e-6, "of T: friction within its bound, to Uzawa's updates"},
-    stick{"stick", 1e-5, "of L: below the bound nothing slides; slips are differences of motions, each as a gap"},
+    stick{"stick", 1e-5,
+          "of L: below the bound nothing slides; slips are differences of motions, each as a gap; and as far as a "
+          "master's shear leaves it open how springs turn with it"},
     direction{"slip direction", 1e-6, "1 + cos of the angle between friction and slip, which oppose one another"},
     dissipation{"dissipation", 1e-6, "of T L: friction takes energy, it gives none"},
     energy{
@@ -44,13 +46,15 @@ constexpr double rounding = 1e-6;  ///< of a stiffness times a motion: the least
 
 constexpr double rounding_of_motion = 1e-15;  ///< of the largest, or of a coordinate: springs make a traction of it
 
-/// Notes a violation, of which the worst is kept.
+/// Notes a violation, of which the worst is kept, by what is allowed.
 void note(Step& step, const Law& law, double value, const std::string& where, double allowed = -1) {
-  auto found = std::find_if(step.findings.begin(), step.findings.end(), [&](auto& f) { return f.law == law.name; });
-  if (found == step.findings.end()) found = step.findings.insert(found, {law.name, where, -infinity, 0, law.why});
-  if (!std::isfinite(value)) value = infinity;
-  if (found->value < value)
-    *found = {law.name, where, std::max(value, 0.0), allowed < 0 ? law.allowed : allowed, law.why};
+  const Finding next{law.name, where, std::isfinite(value) ? std::max(value, 0.0) : infinity,
+                     allowed < 0 ? law.allowed : allowed, law.why};
+  const auto found = std::ranges::find(step.findings, next.law, &Finding::law);
+  if (found == step.findings.end())
+    step.findings.push_back(next);
+  else if (found->share() < next.share())
+    *found = next;
 }
 
 /// Directions in which supports hold a node, each with the motion that it prescribes.
@@ -227,7 +231,8 @@ class Judge : State {
 
   void check_friction(Contact& contact, const Touch& touch, const Vec3& last, const std::string& where, Step& step) {
     const Vec3 s = touch.friction(), slid = touch.slip + touch.compliance[1] * (s - last);  // less what springs yield
-    const double most = bound(contact.given, std::max(touch.pressure(), 0.0));
+    const double most = bound(contact.given, std::max(touch.pressure(), 0.0)),
+                 unsure = touch.unsure * touch.compliance[1] * last.norm();
     const bool has_friction = contact.given.contains("friction");
     note(step, cone, (s.norm() - most) * over(T_), where, has_friction ? cone.allowed : tension.allowed);
     if (!has_friction || s.isZero()) return;
@@ -236,10 +241,12 @@ class Judge : State {
       return;
     }
     note(step, dissipation, s.dot(slid) * over(T_ * L_), where);
-    if (s.norm() < most * (1 - share) - cone.allowed * T_) return note(step, stick, slid.norm() * over(L_), where);
-    if (slid.norm() > stick.allowed * L_ && s.norm() > cone.allowed * T_)
+    if (s.norm() < most * (1 - share) - cone.allowed * T_)
+      return note(step, stick, slid.norm() * over(L_), where, stick.allowed + unsure * over(L_));
+    if (slid.norm() > stick.allowed * L_ + 1e3 * unsure && s.norm() > cone.allowed * T_)
       note(step, direction, 1 + s.dot(slid) / (s.norm() * slid.norm()), where);
     contact.heat -= touch.area * s.dot(slid);
+    unsure_heat_ += touch.area * s.norm() * unsure;
   }
 
   Field arms() const { return scene.places(u).colwise() - scene.points.rowwise().mean(); }
@@ -326,7 +333,8 @@ class Judge : State {
       if (std::isnan(again) || !given.contains(name)) continue;
       const double known = given[name].is_number() ? given[name].get<double>() : NAN;
       note(step, responses, std::abs(known - again) * over(scale),
-           fmt::format("\"{}\" is {:.9g}, not {:.9g}", name, again, known));
+           fmt::format("\"{}\" is {:.9g}, not {:.9g}", name, again, known),
+           responses.allowed + (kind == "dissipation" ? unsure_heat_ : 0) * over(scale));
     }
   }
 
@@ -350,6 +358,7 @@ class Judge : State {
   Eigen::VectorXd rounded_;                             ///< of nodes: what springs make of rounded gaps
   std::map<std::string, double> largest_;               ///< of kinds of responses
   double F_ = 0, L_ = 0, T_ = 0;                        ///< largest force, motion, traction
+  double unsure_heat_ = 0;                              ///< of what springs keep of friction on a master that deforms
   double work_ = 0, spent_ = 0, slack_ = 0, size_ = 0;  ///< energies: done, dissipated, not known, of all parts
 };
 
