@@ -85,8 +85,6 @@ std::vector<Broken> broken_solid() {
   return {
       {"solid_segments", s, R"("discretization": "node")", R"("discretization": @"segment")",
        "/contacts/sole/discretization", R"(allowed in the space solid: "node")"},
-      {"solid_master_that_deforms", s, R"("master": "floor")", R"("master": @"block.left")", "/contacts/sole/master",
-       "the master must be an obstacle at finite strain: floor"},
       {"solid_of_itself", s, R"("slave": "block.bottom", "master": "floor")",
        R"("slave": "block.bottom", "master": @"block.bottom")", "/contacts/sole/master", "no side touches itself"},
       {"solid_element_of_the_plane", s, R"("H8")", R"(@"Q4")", "/bodies/block/element", "H8, H8_mean_dilatation or T4"},

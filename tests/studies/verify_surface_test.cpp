@@ -3,8 +3,9 @@
 
 #include "studies/verify/faces.hpp"
 #include "studies/verify/solids.hpp"
+#include "tests/support/largest.hpp"
 
-namespace stickslip::verify_tests {
+namespace stickslip::verify_surface_tests {
 namespace {
 
 using namespace verify;
@@ -102,9 +103,9 @@ Seam seam(const std::vector<FacePatch>& patches, const Field& x) {
               return jet(p, x, corner_at(p.sides(), edge) + at * edge_along(p.sides(), edge));
             };
             const Mat3 here = on(patch, j, u), there = on(other, k, 1 - u);
-            worst.apart = std::max(worst.apart, (here.col(0) - there.col(0)).norm());
-            worst.sine = std::max(worst.sine, normal(here).cross(normal(there)).norm());
-            worst.cosine = std::min(worst.cosine, normal(here).dot(normal(there)));
+            worst.apart = larger(worst.apart, (here.col(0) - there.col(0)).norm());
+            worst.sine = larger(worst.sine, normal(here).cross(normal(there)).norm());
+            worst.cosine = smaller(worst.cosine, normal(here).dot(normal(there)));
           }
         }
   return worst;
@@ -119,7 +120,7 @@ TEST(VerifySurface, HasWeightsOfSumOneAtEachValence) {
   EXPECT_THAT(valences, testing::IsSupersetOf({3, 4, 5, 6}));
   for (const int smooth : {0, 1, 2})
     for (const auto& patch : Patchwork(mesh.nodes, mesh.faces, smooth, 60).patches) {
-      EXPECT_LE((patch.weigh.colwise().sum().array() - 1).abs().maxCoeff(), rounding);
+      EXPECT_LE(largest_entry((patch.weigh.colwise().sum().array() - 1).matrix()), rounding);
       for (const Vec2& at : places)
         EXPECT_LE((blend(patch.sides(), at).colwise().sum() - Eigen::RowVector3d(1, 0, 0)).norm(), rounding);
     }
@@ -132,7 +133,7 @@ TEST(VerifySurface, HasDerivativesThatAreThoseOfItsValues) {
       for (int i = 0; i < 2; ++i) {
         const Vec2 step = h * Vec2::Unit(i);
         const Eigen::VectorXd difference = (blend(sides, at + step) - blend(sides, at - step)).col(0) / (2 * h);
-        EXPECT_LE((difference - blend(sides, at).col(1 + i)).cwiseAbs().maxCoeff(), 1e-8);
+        EXPECT_LE(largest_entry(difference - blend(sides, at).col(1 + i)), 1e-8);
       }
 }
 
@@ -207,7 +208,7 @@ TEST(VerifySurface, KeepsCreases) {
       for (const Vec2& at : places) {
         if (patch.sides() == 3 && at.sum() > 1) continue;
         const Vec3 y = jet(patch, mesh.nodes, at).col(0);
-        EXPECT_NEAR(y.cwiseAbs().maxCoeff(), 1, rounding);
+        EXPECT_NEAR(largest_entry(y), 1, rounding);
       }
     Mesh moved = mesh;
     shake(moved);
@@ -284,4 +285,4 @@ TEST(VerifySurface, IsNotInsideByAFartherFace) {
 }
 
 }  // namespace
-}  // namespace stickslip::verify_tests
+}  // namespace stickslip::verify_surface_tests

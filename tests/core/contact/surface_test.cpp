@@ -11,6 +11,7 @@
 #include <set>
 
 #include "core/contact/surface_search.hpp"
+#include "tests/support/largest.hpp"
 
 namespace stickslip::surface_test {
 namespace {
@@ -146,7 +147,7 @@ TEST(Surface, KeepsPlanesAndSpheres) {
       const At middle = at(patch, net.points, {0.3, 0.3});
       const Vec<double, 3> from = middle.y - Vec<double, 3>(n / 2.0, n / 2.0, 0);
       if (from.head<2>().norm() > 0.3 * n) continue;  // (near its border a sheet has one-sided normals)
-      errors[fine] = std::max(errors[fine], std::abs(from.norm() / n - 1));
+      errors[fine] = larger(errors[fine], std::abs(from.norm() / n - 1));
     }
     Net flat = sheet(
         n, n, [](int i, int j) { return 0.3 * i - 0.2 * j; }, [](int i, int) { return i % 2 == 0; });
@@ -224,7 +225,9 @@ TEST(SurfaceSearch, FindsTheNearestPlaceOfSmoothSurfaces) {
       const At foot = at(patch, net.points, {found.xi, found.eta});
       const Vec<double, 3> off = x - foot.y;
       EXPECT_LE(off.cross(foot.normal).norm(), 1e-8);  // it is a foot: the search ends at 1e-10 of a patch
-      EXPECT_LE(off.norm(), (all.colwise() - x).colwise().norm().minCoeff() + 1e-9);
+      double nearest = (all.col(0) - x).norm();
+      for (Eigen::Index k = 1; k < all.cols(); ++k) nearest = smaller(nearest, (all.col(k) - x).norm());
+      EXPECT_LE(off.norm(), nearest + 1e-9);
     }
   }
 }
