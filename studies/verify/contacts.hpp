@@ -102,10 +102,7 @@ class Contact {
       seeker.size += (facet.chord(x).norm() - seeker.size) / ++count;
     }
     for (const auto& face : side_.edges)
-      if (faces_ && std::ranges::count(face, node) > 0) {
-        const std::size_t last = face.size() - 1;  // (half of what diagonals, or two edges of a triangle, span)
-        seeker.outward += (x.col(face[last - 1]) - x.col(face[0])).cross(x.col(face[last]) - x.col(face[1])) / 2;
-      }
+      if (faces_ && std::ranges::count(face, node) > 0) seeker.outward += area_vector(x, face);
     return seeker;
   }
 

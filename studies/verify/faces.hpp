@@ -4,8 +4,8 @@
 ///   (x - y) . y_s = (x - y) . y_t = 0,   n = y_s x y_t / |y_s x y_t|,   g = n . (x - y)
 ///
 /// Where several patches have it: at finite strain each is extended over its edges, and that with the largest gap is
-/// faced; at small strain, of faces of the start, the normal is the mean of theirs, of those that oppose the slave's
-/// side.
+/// faced, of equal gaps the first; at small strain, of faces of the start, the normal is the mean of theirs, of those
+/// that oppose the slave's side.
 #pragma once
 
 #include "studies/verify/masters.hpp"
@@ -23,9 +23,12 @@ class Faces {
 
   void place_nodes(const Field& x) {
     nets_.clear();
+    boxes_.clear();
     for (const auto& patch : patches_) {  // (differences are exact where a coordinate is one of all nodes)
       const Vec3 first = x.col(patch.nodes[0]);
       nets_.emplace_back(((x(Eigen::all, patch.nodes).colwise() - first) * patch.weigh).colwise() + first);
+      boxes_.push_back(
+          {nets_.back().rowwise().minCoeff(), nets_.back().rowwise().maxCoeff(), area_vector(x, patch.face)});
     }
   }
 
@@ -69,13 +72,7 @@ class Faces {
     y.col(0) += nets_[p].col(0);
     return y;
   }
-  Vec3 corner(int p, int j) const { return nets_[p].col(j % patches_[p].sides()); }
-  /// The longest edge of a patch.
-  double size(int p) const {
-    double size = 0;
-    for (int j = 0; j < patches_[p].sides(); ++j) size = std::max(size, (corner(p, j + 1) - corner(p, j)).norm());
-    return size;
-  }
+  double size(int p) const { return (boxes_[p][1] - boxes_[p][0]).norm(); }
 
   Near near(int p, const Vec2& at, const Vec3& x) const {
     const Mat3 y = jet(p, at);
@@ -126,10 +123,8 @@ class Faces {
   std::vector<Near> closest(const Vec3& x, const Vec3& outward) const {
     std::vector<std::pair<double, int>> boxes;  // with their distance
     for (int p = 0; p < std::ssize(patches_); ++p) {
-      const int m = patches_[p].sides();
-      const Vec3 low = nets_[p].rowwise().minCoeff(), high = nets_[p].rowwise().maxCoeff(),
-                 across = (corner(p, m - 2) - corner(p, 0)).cross(corner(p, m - 1) - corner(p, 1));
-      if (!(outward.dot(across) > 0)) boxes.emplace_back((x - x.cwiseMax(low).cwiseMin(high)).norm(), p);
+      const auto& [low, high, across] = boxes_[p];
+      if (outward.dot(across) <= 0) boxes.emplace_back((x - x.cwiseMax(low).cwiseMin(high)).norm(), p);
     }
     std::ranges::sort(boxes);
     std::vector<Near> near;
@@ -144,16 +139,12 @@ class Faces {
     return near;
   }
 
-  /// Whether x is past an edge of which the face beyond is none of those that are near.
-  bool is_past_border(const std::vector<Near>& near, const Near& here, const Vec3& x) const {
+  /// Whether x is past an edge that no other face has.
+  bool is_past_border(const Near& here, const Vec3& x) const {
     const auto& [p, s, t] = here.place;
     const int m = patches_[p].sides();
     for (int j = 0; j < m; ++j) {
-      const auto has_it = [&](const Near& at) {
-        const Nodes &face = patches_[at.place.patch].face, &own = patches_[p].face;
-        return std::ranges::count(face, own[j]) + std::ranges::count(face, own[(j + 1) % m]) == 2;
-      };
-      if (from_edges(m, s, t)[j] > at_end || std::ranges::count_if(near, has_it) > 1) continue;
+      if (!patches_[p].border[j] || from_edges(m, s, t)[j] > at_end) continue;
       const Vec3 along = jet(p, {s, t}).rightCols<2>() * edge_along(m, j);
       if ((x - here.y).dot(along.cross(here.normal).normalized()) > 1e-6 * size(p)) return true;
     }
@@ -163,13 +154,15 @@ class Faces {
   /// Keeps of the nearest places those that x faces, the best first; whether there is one. What is inside of the solid
   /// by a patch is not where it is outside by a nearer one.
   bool settle_on(std::vector<Near>& near, const Vec3& x, const Vec3& outward) const {
-    if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(near, at, x); })) return false;
+    if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(at, x); })) return false;
     if (!finite_) std::erase_if(near, [&](const Near& at) { return outward.dot(at.normal) >= 0; });
     if (!finite_) return !near.empty();
     for (auto& at : near)
       if (const auto beyond = across(at.place.patch, {at.place.xi, at.place.eta}, Eigen::Matrix2d::Identity(), x))
         at = this->near(at.place.patch, *beyond, x);
-    std::ranges::stable_sort(near, std::greater<>{}, &Near::gap);
+    std::ranges::sort(near, {}, [](const Near& at) { return at.place.patch; });
+    const double most = std::ranges::max(near, {}, &Near::gap).gap - at_end * size(near[0].place.patch);
+    std::iter_swap(near.begin(), std::ranges::find_if(near, [&](const Near& at) { return at.gap >= most; }));
     if (near[0].gap >= 0 || outward.isZero()) return !near.empty();
     auto all = closest(x, Vec3::Zero());
     return !settle_on(all, x, Vec3::Zero()) || all[0].gap <= 0;
@@ -177,7 +170,8 @@ class Faces {
 
   bool finite_;
   std::vector<FacePatch> patches_;
-  std::vector<Field> nets_;  ///< control points
+  std::vector<Field> nets_;                 ///< control points
+  std::vector<std::array<Vec3, 3>> boxes_;  ///< two ends of what they are in; area vectors of faces
 };
 
 }  // namespace stickslip::verify

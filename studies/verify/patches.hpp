@@ -22,8 +22,9 @@ namespace stickslip::verify {
 
 /// A patch goes once around its corners, counter-clockwise from outside. Triangles 0 <= s, t, s + t <= 1.
 struct FacePatch {
-  Nodes face, nodes;      ///< corners; those that the patch is made of
-  Eigen::MatrixXd weigh;  ///< W by node and c
+  Nodes face, nodes;         ///< corners; those that the patch is made of
+  Eigen::MatrixXd weigh;     ///< W by node and c
+  std::vector<char> border;  ///< whether no other face has an edge
   int sides() const { return static_cast<int>(face.size()); }
 };
 
@@ -70,13 +71,13 @@ class Patchwork {
   Patchwork(const Field& X, const std::vector<Nodes>& faces, int smooth, double corner)
       : faces_(faces), smooth_(smooth), least_(std::cos(corner * std::numbers::pi / 180) - 1e-9) {
     for (int f = 0; f < std::ssize(faces); ++f)
-      for (int j = 0; j < std::ssize(faces[f]); ++j) left_[{faces[f][j], node(f, j + 1)}] = {f, j};
+      for (int j = 0; j < sides(f); ++j) {
+        left_[{node(f, j), node(f, j + 1)}] = {f, j};
+        faces_at_[node(f, j)].push_back(f);
+      }
     find_creases(X);
     for (int f = 0; f < std::ssize(faces); ++f) patches.push_back(patch_of(f));
   }
-
-  /// Whether an edge of a face is one of no other.
-  bool is_border(int face, int j) const { return !left_.contains({node(face, j + 1), node(face, j)}); }
 
   std::vector<FacePatch> patches;  ///< by face
 
@@ -94,20 +95,14 @@ class Patchwork {
   int sides(int face) const { return static_cast<int>(faces_[face].size()); }
   bool is_crease(const std::array<int, 2>& edge) const { return creases_.contains({edge[0], edge[1]}); }
 
-  /// Normal of a face: across its diagonals, or two edges.
-  static Vec3 normal_of(const Field& X, const Nodes& face) {
-    const std::size_t last = face.size() - 1;
-    return (X.col(face[last - 1]) - X.col(face[0])).cross(X.col(face[last]) - X.col(face[1])).normalized();
-  }
-
   /// Edges, in both directions, where the surface turns or ends, and nodes where these turn, branch or end.
   void find_creases(const Field& X) {
     std::map<int, Nodes> ends;  // of creases by the node where they meet
+    const auto normal = [&](const Corner& at) { return area_vector(X, faces_[at[0]]).normalized(); };
     for (const auto& [edge, at] : left_) {
       const std::array back{edge[1], edge[0]};
       const auto other = left_.find(back);
-      const bool goes_on = smooth_ > 0 && other != left_.end() &&
-                           normal_of(X, faces_[at[0]]).dot(normal_of(X, faces_[other->second[0]])) >= least_;
+      const bool goes_on = smooth_ > 0 && other != left_.end() && normal(at).dot(normal(other->second)) >= least_;
       if (goes_on) continue;
       creases_.insert(edge);
       if (creases_.insert(back).second) ends[edge[0]].push_back(edge[1]), ends[edge[1]].push_back(edge[0]);
@@ -195,14 +190,17 @@ class Patchwork {
 
   FacePatch patch_of(int f) const {
     std::map<int, int> number;  // of the nodes of faces that have one in common
-    for (const auto& face : faces_)
-      if (std::ranges::any_of(face, [&](int n) { return std::ranges::count(faces_[f], n) > 0; }))
-        for (const int n : face) number.emplace(n, std::ssize(number));
+    for (const int near : faces_[f])
+      for (const int face : faces_at_.at(near))
+        for (const int n : faces_[face]) number.emplace(n, std::ssize(number));
     const int m = sides(f);
-    FacePatch patch{faces_[f], Nodes(number.size()), Eigen::MatrixXd(number.size(), 5 * m)};
+    FacePatch patch{faces_[f], Nodes(number.size()), Eigen::MatrixXd(number.size(), 5 * m), {}};
     for (const auto& [n, k] : number) patch.nodes[k] = n;
     std::vector<Vertex> vertices;
-    for (int j = 0; j < m; ++j) vertices.push_back(vertex({f, j}, number));
+    for (int j = 0; j < m; ++j) {
+      vertices.push_back(vertex({f, j}, number));
+      patch.border.push_back(!left_.contains({node(f, j + 1), node(f, j)}));
+    }
     for (int j = 0; j < m; ++j) {
       const auto& [p, spoke, twist, c] = vertices[j];
       patch.weigh.col(j) = p;
@@ -223,6 +221,7 @@ class Patchwork {
   int smooth_;
   double least_;                                    ///< cosine of the turn of a crease
   std::map<std::array<int, 2>, Corner> left_ = {};  ///< the face on the left of an edge, and the corner it begins at
+  std::map<int, Nodes> faces_at_ = {};              ///< by node
   std::set<std::array<int, 2>> creases_ = {};
   std::set<int> corners_ = {};
   std::set<int> tips_ = {};  ///< where one crease ends; there the surface is smooth all around

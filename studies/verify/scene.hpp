@@ -32,6 +32,12 @@ inline Vec3 vec3(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.size() > 2 ? json[2].get<double>() : 0};
 }
 
+/// Of nodes at x, the vector area of a face in space: half of what its diagonals, or two edges of a triangle, span.
+inline Vec3 area_vector(const Field& x, const Nodes& face) {
+  const std::size_t last = face.size() - 1;
+  return (x.col(face[last - 1]) - x.col(face[0])).cross(x.col(face[last]) - x.col(face[1])) / 2;
+}
+
 /// An empty object where the key is missing.
 inline const Json& part(const Json& json, const std::string& key) {
   static const Json none = Json::object();
