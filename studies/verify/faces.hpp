@@ -45,7 +45,7 @@ class Faces {
     if (near.empty()) return {};
     const Near first = near[0];
     const bool faces = settle_on(near, x, outward);
-    if (!faces) return Foot{false, first.y, first.normal, 0, first.place}.away_from(x);
+    if (!faces) return Foot{false, first.y, first.normal}.away_from(x);
     const Near& best = near[0];
     const auto& [p, s, t] = best.place;
     Foot foot{true, best.y, best.normal, best.gap, best.place};
@@ -139,14 +139,14 @@ class Faces {
     return near;
   }
 
-  /// Whether x is past an edge that no other face has.
+  /// Whether x is past an edge that no other face has: at finite strain by more than a hundredth of a face.
   bool is_past_border(const Near& here, const Vec3& x) const {
     const auto& [p, s, t] = here.place;
-    const int m = patches_[p].sides();
-    for (int j = 0; j < m; ++j) {
-      if (!patches_[p].border[j] || from_edges(m, s, t)[j] > at_end) continue;
-      const Vec3 along = jet(p, {s, t}).rightCols<2>() * edge_along(m, j);
-      if ((x - here.y).dot(along.cross(here.normal).normalized()) > 1e-6 * size(p)) return true;
+    const Eigen::VectorXd off = from_edges(patches_[p].sides(), s, t);
+    for (int j = 0; j < off.size(); ++j) {
+      if (!patches_[p].border[j] || off[j] > (finite_ ? -0.01 : at_end)) continue;
+      const Vec3 along = jet(p, {s, t}).rightCols<2>() * edge_along(patches_[p].sides(), j);
+      if (finite_ || (x - here.y).dot(along.cross(here.normal).normalized()) > 1e-6 * size(p)) return true;
     }
     return false;
   }
@@ -154,16 +154,16 @@ class Faces {
   /// Keeps of the nearest places those that x faces, the best first; whether there is one. What is inside of the solid
   /// by a patch is not where it is outside by a nearer one.
   bool settle_on(std::vector<Near>& near, const Vec3& x, const Vec3& outward) const {
+    for (const auto& at : finite_ ? std::exchange(near, {}) : std::vector<Near>{})
+      if (const auto on = across(at.place.patch, {at.place.xi, at.place.eta}, Eigen::Matrix2d::Identity(), x))
+        near.push_back(this->near(at.place.patch, *on, x));
     if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(at, x); })) return false;
     if (!finite_) std::erase_if(near, [&](const Near& at) { return outward.dot(at.normal) >= 0; });
-    if (!finite_) return !near.empty();
-    for (auto& at : near)
-      if (const auto beyond = across(at.place.patch, {at.place.xi, at.place.eta}, Eigen::Matrix2d::Identity(), x))
-        at = this->near(at.place.patch, *beyond, x);
+    if (!finite_ || near.empty()) return !near.empty();
     std::ranges::sort(near, {}, [](const Near& at) { return at.place.patch; });
     const double most = std::ranges::max(near, {}, &Near::gap).gap - at_end * size(near[0].place.patch);
     std::iter_swap(near.begin(), std::ranges::find_if(near, [&](const Near& at) { return at.gap >= most; }));
-    if (near[0].gap >= 0 || outward.isZero()) return !near.empty();
+    if (near[0].gap >= 0 || outward.isZero()) return true;
     auto all = closest(x, Vec3::Zero());
     return !settle_on(all, x, Vec3::Zero()) || all[0].gap <= 0;
   }

@@ -2,7 +2,7 @@
 ///
 ///   y(s, t) = sum_c B_c(s, t) sum_i W_ci x_i,    c: p, e+, e-, f+, f- of each corner (Gregory patches)
 ///
-/// W hangs on what neighbours what alone. Across a crease nothing does; where all edges are creases, patches are the
+/// W depends on what neighbours what alone. Across a crease nothing does; where all edges are creases, patches are the
 /// flat triangles and bilinear quadrilaterals.
 ///
 ///   edges cubic:  p, e = p + cos(k theta) t1 + sin(k theta) t2 of spoke k,  theta = 2 pi / K, pi / K of a border,
@@ -41,16 +41,23 @@ inline Vec2 corner_at(int sides, int j) {
 }
 inline Vec2 edge_along(int sides, int j) { return corner_at(sides, j + 1) - corner_at(sides, j); }
 
-/// B_c. Of a triangle quartic in the middle; a is the share of f+ in the inner point of a corner.
+/// p^2 q / (p + q), how f+ of a corner is blended with f-; beyond an edge its Taylor polynomial of second order.
+inline std::complex<double> blend_at_corner(std::complex<double> p, std::complex<double> q) {
+  const auto p0 = p.real() > 0 ? p : 0.0, q0 = q.real() > 0 ? q : 0.0, a = p0 + q0 == 0.0 ? 0.5 : p0 / (p0 + q0);
+  const auto b = 1.0 - a, dp = p - p0, dq = q - q0;
+  return p0 * q0 * a + q0 * a * (1.0 + b) * dp + p0 * a * a * dq + b * b * b * dp * dp +
+         a * a * (1.0 + 2.0 * b) * dp * dq - a * a * a * dq * dq;
+}
+
+/// B_c. Of a triangle quartic in the middle.
 inline Eigen::VectorXcd blend(int sides, std::complex<double> s, std::complex<double> t) {
   const Eigen::VectorXcd off = from_edges(sides, s, t);
   Eigen::VectorXcd B(5 * sides);
   for (int j = 0; j < sides; ++j) {
     const auto u = off[(j + sides - 1) % sides], v = off[j];  // from the corner along its edge, and along that before
-    const auto P = sides == 3 ? 1.0 - u - v : (1.0 - u) * (1.0 - v), inner = (sides == 3 ? 12.0 : 9.0) * u * v * P * P;
-    const auto a = u + v == 0.0 ? 0.5 : u / (u + v);
-    B(Eigen::seqN(j, 5, sides)) << P * P * P, 3.0 * u * (1.0 - v) * P * P, 3.0 * v * (1.0 - u) * P * P, a * inner,
-        (1.0 - a) * inner;
+    const auto P = sides == 3 ? 1.0 - u - v : (1.0 - u) * (1.0 - v), inner = (sides == 3 ? 12.0 : 9.0) * P * P;
+    B(Eigen::seqN(j, 5, sides)) << P * P * P, 3.0 * u * (1.0 - v) * P * P, 3.0 * v * (1.0 - u) * P * P,
+        inner * blend_at_corner(u, v), inner * blend_at_corner(v, u);
   }
   return B;
 }

@@ -227,6 +227,28 @@ TEST(VerifySurface, KeepsCreases) {
   }
 }
 
+/// A ridge of 45 degrees that fades: where the crease ends, the surface is smooth all around the node.
+TEST(VerifySurface, IsSmoothWhereACreaseEnds) {
+  Mesh mesh = grid(6, false, 0);
+  for (int n = 0; n < mesh.nodes.cols(); ++n)
+    mesh.nodes.col(n) = Vec3(n % 7, n / 7, n % 7 == 3 ? 0.4 * std::max(0, 4 - n / 7) / 3.0 : 0);
+  for (const int smooth : {1, 2}) {
+    std::map<int, std::vector<Vec3>> normals;  // of the faces at each node on the ridge
+    for (const auto& patch : Patchwork(mesh.nodes, mesh.faces, smooth, 30).patches)
+      for (int j = 0; j < 4; ++j)
+        if (patch.face[j] % 7 == 3)
+          normals[patch.face[j] / 7].push_back(normal(jet(patch, mesh.nodes, corner_at(4, j))));
+    const auto turn = [&](int row) {
+      double most = 0;
+      for (const Vec3& n : normals[row]) most = larger(most, n.cross(normals[row][0]).norm());
+      return most;
+    };
+    EXPECT_GT(turn(1), 0.5);
+    EXPECT_LE(turn(3), 1e-12);
+    EXPECT_LE(turn(4), 1e-12);
+  }
+}
+
 // --- feet ----------------------------------------------------------------------------------------------------------
 
 TEST(VerifySurface, FindsTheFootThatAPointIsLiftedFrom) {
