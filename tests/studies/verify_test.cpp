@@ -136,6 +136,27 @@ json two_blocks(const std::string& strain, const json& surface, const std::strin
   return scene;
 }
 
+/// A block that is pressed on a barrel whose faces turn by 20 degrees, and drawn over it askew.
+json on_barrel(const char* element, const json& surface) {
+  json scene = json::parse(R"({
+    "space": "solid", "strain": "finite",
+    "bodies": {"barrel": {"mesh": {"extruded": {"mesh": {"ring": {"center": [0, 0], "inner": 0.5, "outer": 1, "cells": [2, 9],
+                                     "from_angle": 0, "to_angle": 180}}, "from": 0, "to": 2, "cells": 4}}},
+               "block": {"mesh": {"extruded": {"mesh": {"quad": {"corners": [[-0.52, 1.02], [0.57, 1.03], [0.57, 1.6], [-0.52, 1.6]],
+                                    "cells": [5, 2]}}, "from": 0.43, "to": 1.54, "cells": 4}}}},
+    "contacts": {"c": {"slave": "block.bottom", "master": "barrel.outer", "friction": 0.3}},
+    "supports": [{"on": "barrel.inner", "move": {"x": 0, "y": 0, "z": 0}},
+                 {"on": "block.top", "move": {"x": [[1, 0], [2, 0.15]], "y": [[0, 0], [1, -0.1]], "z": [[1, 0], [2, 0.1]]}}],
+    "time": {"end": 2, "steps": 8},
+    "responses": {"N": {"contact_force": {"contact": "c", "component": "normal"}}, "D": {"dissipation": {"contact": "c"}},
+                  "g": {"gap": {"contact": "c", "take": "max"}}},
+    "method": {"monolithic_al": {}}})");
+  for (const char* body : {"barrel", "block"}) scene["bodies"][body]["material"] = rubber();
+  scene["bodies"]["barrel"]["element"] = element;
+  scene["contacts"]["c"]["surface"] = surface;
+  return scene;
+}
+
 /// A block on an obstacle that moves and turns.
 json on_obstacle(const std::string& strain, const std::string& obstacle, const std::string& discretization) {
   json scene = json::parse(R"({
@@ -233,6 +254,17 @@ TEST(Verify, HoldsForSolidBodiesInSpace) {
     }
 }
 
+TEST(Verify, HoldsForSolidBodiesThatSlideOnOneAnother) {
+  for (const char* element : {"H8", "T4"})
+    for (const auto& surface :
+         {json("smooth"), json{{"smooth", "b_spline"}}, json{{"smooth", "catmull_rom"}, {"corner", 15}}})
+      for (const char* method : {"penalty", "monolithic_al"}) {
+        SCOPED_TRACE(element + surface.dump() + method);
+        expect_holds(solve(on_barrel(element, surface), method));
+      }
+  expect_holds(solve(on_barrel("H8", "faceted"), "penalty"));
+}
+
 /// Forces of segments act where each side is; between curved sides these are two places.
 TEST(Verify, TellsTheMomentThatAContactLeaves) {
   const fs::path hard = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "hard";
@@ -327,6 +359,7 @@ json scene_of(const std::string& base) {
   if (base == "solid") return solid("finite", "H8", rubber(), floor_in_space, false);
   if (base == "two blocks") return two_blocks("finite", "smooth", "node");
   if (base == "segments") return two_blocks("finite", "faceted", "segment");
+  if (base == "barrel") return on_barrel("H8", "smooth");
   if (base == "polyline") return on_obstacle("finite", polyline, "node");
   return cases::load(folder / (base + ".json"));
 }
@@ -411,6 +444,16 @@ std::vector<Fault> in_numbers() {
            t[3 * k] = -t[3 * k + 1].get<double>();
            t[3 * k + 1] = x;
          }
+       }},
+      {"a point of a solid inside of another", "barrel", "gap",
+       [](Solved& s) {
+         for (const auto& node : contact(s)["nodes"])
+           add(last(s)["displacement"][3 * node.get<std::size_t>() + 1], -1e-5);
+       }},
+      {"friction on another solid turned by a right angle", "barrel", "slip direction",
+       [](Solved& s) {
+         json& t = contact(s)["traction"];
+         for (std::size_t k = 0; 3 * k < t.size(); ++k) std::swap(t[3 * k], t[3 * k + 2]);
        }},
       {"a displacement that is no number", "block", "equilibrium",
        [](Solved& s) { last(s)["displacement"][2 * 5] = nullptr; }},
@@ -516,6 +559,11 @@ std::vector<Fault> in_scenes() {
       {"a smooth master for facets", "segments", "equilibrium", in_scene("/contacts/c/discretization", "node")},
       {"a faceted master", "two blocks", "equilibrium", in_scene("/contacts/c/surface", "faceted")},
       {"another smooth master", "two blocks", "gap", in_scene("/contacts/c/surface", json{{"smooth", "b_spline"}})},
+      {"a faceted master in space", "barrel", "gap", in_scene("/contacts/c/surface", "faceted")},
+      {"another smooth master in space", "barrel", "complementarity",
+       in_scene("/contacts/c/surface", json{{"smooth", "b_spline"}})},
+      {"creases in space", "barrel", "complementarity",
+       in_scene("/contacts/c/surface", json{{"smooth", "catmull_rom"}, {"corner", 15}})},
       {"a floor elsewhere", "block", "gap", in_scene("/obstacles/floor/plane/point/1", 1e-4)},
       {"a floor that is turned", "block", "cone", in_scene("/obstacles/floor/plane/normal/0", 1e-3)},
       {"an obstacle that does not turn", "polyline", "gap",
