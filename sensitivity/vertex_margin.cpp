@@ -130,7 +130,7 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
 
 bool slides_along_facets(const Model& model) {
   const auto has_facets = [](const MasterCurve& curve) {
-    const auto is_face = [](const SurfacePatch& patch) { return patch.control.size() == 0; };
+    const auto is_face = [](const SurfacePatch& patch) { return !patch.is_smooth(); };
     return std::any_of(curve.patches.begin(), curve.patches.end(), is_facet) ||
            std::any_of(curve.surface.begin(), curve.surface.end(), is_face);
   };

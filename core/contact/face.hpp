@@ -46,6 +46,14 @@ std::array<Vec<T, 3>, 4> corners_of(const FacePlace& face, const Position& posit
   return corner;
 }
 
+/// Area vector of a face, out of the solid: of a quadrilateral by its diagonals. `corner(k)`: its position.
+template <class T, class Corner>
+Vec<T, 3> area_vector(int corners, const Corner& corner) {
+  const auto between = [&](int from, int to) -> Vec<T, 3> { return corner(to) - corner(from); };
+  const bool is_triangle = corners == 3;
+  return T(0.5) * cross<T>(is_triangle ? between(0, 1) : between(0, 2), is_triangle ? between(0, 2) : between(1, 3));
+}
+
 /// Coordinates (s, t) of a corner, counted on from the first beyond the last.
 inline Vec<double, 2> face_corner(int corners, int number) {
   const int k = number % corners;

@@ -18,11 +18,6 @@ bool precedes(const NearestPlace& a, const NearestPlace& b) {
   return std::lexicographical_compare(a.position.begin(), a.position.end(), b.position.begin(), b.position.end());
 }
 
-/// Normal of a face by its diagonals, twice its area long.
-Vec<double, 3> diagonals(const std::array<Vec<double, 3>, 4>& corner, int corners) {
-  return cross<double>(corner[2] - corner[0], corner[corners - 1] - corner[1]);
-}
-
 std::vector<FacePlace> faces_of(const std::vector<std::vector<int>>& all) {
   std::vector<FacePlace> faces;
   for (const auto& nodes : all) {
@@ -85,7 +80,8 @@ std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x, const
   const auto skips = [&](const Bounds<3>& box) { return box.distance(x) > least + band_; };
   boxes_.visit(x, skips, [&](int f) {
     const auto corner = corners(faces_[f]);
-    if (outward != Vec<double, 3>::Zero() && diagonals(corner, faces_[f].corners).dot(outward) >= 0) return;
+    const auto across = [&] { return area_vector<double>(faces_[f].corners, [&](int k) { return corner[k]; }); };
+    if (outward != Vec<double, 3>::Zero() && across().dot(outward) >= 0) return;
     near.push_back({nearest_of_face(faces_[f], corner, x), f});
     least = std::min(least, near.back().distance);
   });

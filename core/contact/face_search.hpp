@@ -25,14 +25,14 @@ class FaceSearch {
   ///   outward  outward normal of the slave side at x, any length: faces whose normal does not oppose it are passed
   ///            over; if it is zero, none is
   std::vector<Near> nearest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const;
-  /// Whether x projects past a border of the surface on which its closest places are.
-  bool is_past_border(const std::vector<Near>& places, const Vec<double, 3>& x) const;
 
   /// The closest place of the surface to x, on each face that has it; none if x projects past a border of the surface.
   /// Of places that are equally close it is one inside of a face, then that of least x, y, z: geometry alone decides.
   std::vector<FacePlace> closest(const Vec<double, 3>& x) const;
 
  private:
+  /// Whether x projects past a border of the surface on which its closest places are.
+  bool is_past_border(const std::vector<Near>& places, const Vec<double, 3>& x) const;
   std::array<Vec<double, 3>, 4> corners(const FacePlace& face) const;
 
   Points<double> points_;

@@ -147,7 +147,7 @@ class ControlPoints {
         t2 += 2.0 / (3 * n) * std::sin(k * theta) * x[k];
       }
     } else if (fan.is_closed) {
-      const double C = std::cos(theta), A = 1 + C + std::cos(pi / n) * std::sqrt(2 * (9 + C)), size = limit_size(n);
+      const double A = tangent_mask(n), size = limit_size(n);
       fan.point = 1.0 * n * n * v;
       for (int k = 0; k < n; ++k) {
         fan.point += 4.0 * x[k] + d[k];
@@ -200,11 +200,17 @@ class ControlPoints {
     }
   }
 
+  /// Share of the neighbours in the tangents of subdivision at a node with n faces, the far nodes' being 1.
+  static double tangent_mask(int n) {
+    const double C = std::cos(2 * pi / n);
+    return 1 + C + std::cos(pi / n) * std::sqrt(2 * (9 + C));
+  }
+
   /// Factor of the tangents at a node with n faces, by which |e - p| is 2/3 lambda |q| of Loop et al., lambda the second
   /// eigenvalue of subdivision.
   static double limit_size(int n) {
     const double theta = 2 * pi / n, C = std::cos(theta), half = std::cos(pi / n);
-    const double A = 1 + C + half * std::sqrt(2 * (9 + C)), sigma = 1 / std::sqrt(4 + half * half);
+    const double A = tangent_mask(n), sigma = 1 / std::sqrt(4 + half * half);
     const double lambda = (5 + C + half * std::sqrt(18 + 2 * C)) / 16;
     double own = 0, q = 0;  // of a plane star of unit spokes
     for (int k = 0; k < n; ++k) {

@@ -15,9 +15,8 @@ namespace {
 using Edge = std::pair<int, int>;
 
 Vec<double, 3> facet_normal(const SurfacePatch& patch, const Points<double>& positions) {
-  const auto at = [&](int corner) -> Vec<double, 3> { return positions.col(patch.vertices[corner]); };
-  const int last = patch.corners - 1;
-  return cross<double>(at(2) - at(0), at(last) - at(1)).normalized();
+  const auto corner = [&](int k) -> Vec<double, 3> { return positions.col(patch.vertices[k]); };
+  return area_vector<double>(patch.corners, corner).normalized();
 }
 
 /// The two ends of an edge, counter-clockwise.
@@ -41,9 +40,12 @@ void join(std::vector<SurfacePatch>& patches) {
     }
 }
 
+/// Cosine of a turn of `corner` degrees; less by what rounding makes of faces that turn by just that.
+double least_cosine(double corner) { return std::cos(corner * std::numbers::pi / 180) - 1e-9; }
+
 /// Edges at which the surface is not smooth, by their ends in ascending order: borders, and creases.
 std::set<Edge> sharp_edges(const std::vector<SurfacePatch>& patches, double corner, const Points<double>& positions) {
-  const double least = std::cos(corner * std::numbers::pi / 180);
+  const double least = least_cosine(corner);
   std::set<Edge> sharp;
   for (const auto& patch : patches)
     for (int k = 0; k < patch.corners; ++k) {
@@ -64,7 +66,7 @@ std::vector<char> border_corners(const std::vector<SurfacePatch>& patches, const
     ends[b].push_back(a);
   }
   std::vector<char> is_corner(static_cast<std::size_t>(positions.cols()), 0);
-  const double least = std::cos(corner * std::numbers::pi / 180);
+  const double least = least_cosine(corner);
   for (const auto& [a, others] : ends) {
     const auto along = [&](int k) -> Vec<double, 3> {
       return (positions.col(others[k]) - positions.col(a)).normalized();
@@ -110,14 +112,14 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> slopes_at(const SurfacePatch& patch, co
     for (int c = 0; c < count; ++c) n.row(c) << w.value[c], w.along_s[c], w.along_t[c];
     return n;
   };
-  if (patch.control.size() == 0) return fill(patch.corners, face_weights<double>(patch.corners, at[0], at[1]));
+  if (!patch.is_smooth()) return fill(patch.corners, face_weights<double>(patch.corners, at[0], at[1]));
   return fill(detail::points_per_corner * patch.corners, detail::gregory_basis<double>(patch.corners, at[0], at[1]));
 }
 
 /// Of the vertices, from those of the control points.
 template <class Rows>
 auto of_vertices(const SurfacePatch& patch, Rows rows) {
-  if (patch.control.size() == 0) return rows;
+  if (!patch.is_smooth()) return rows;
   return Rows(patch.control.transpose() * rows);
 }
 
@@ -167,7 +169,7 @@ Eigen::VectorXd weights_moved(const SurfacePatch& patch, const Vec<double, 2>& f
   // Gauss's rule with four points on (0, 1)
   constexpr std::array place{0.06943184420297371, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629};
   constexpr std::array share{0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693};
-  Eigen::VectorXd moved = Eigen::VectorXd::Zero(patch.control.size() == 0 ? patch.corners : patch.control.rows());
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(patch.is_smooth() ? patch.control.rows() : patch.corners);
   for (std::size_t g = 0; g < place.size(); ++g)
     moved += share[g] * slopes_at(patch, from + place[g] * way).rightCols<2>() * way;
   return of_vertices(patch, std::move(moved));

@@ -33,6 +33,7 @@ struct SurfacePatch {
   std::array<int, 4> across{{Patch::none, Patch::none, Patch::none, Patch::none}};  ///< per edge: the patch behind it
   std::array<int, 4> across_edge{};                                                 ///< its number of that edge
   std::array<char, 4> goes_on{};  ///< per edge: whether the normal is continuous there
+  bool is_smooth() const { return control.size() > 0; }
 };
 
 /// Patches of faces, one each. Throws std::runtime_error if the faces do not make a surface: three at an edge, or two

@@ -165,44 +165,61 @@ Facing SurfaceSearch::larger_gap(const std::vector<Facing>& feet, const Vec<doub
   return best;
 }
 
-/// What x faces if its foot on a patch lies past an edge at which the surface is not smooth.
-Facing SurfaceSearch::beyond_edges(const Facing& at, const Vec<double, 3>& x) const {
-  const SurfacePatch& patch = patches_[at.patch];
-  if (is_past_border(patch, place_of(at), past_border)) return {};
-  std::vector<Facing> feet{at};
-  for (int k = 0; k < patch.corners; ++k) {
-    if (patch.goes_on[k] || beyond_edge(patch.corners, k, place_of(at)) <= at_face_edge) continue;
-    if (patch.across[k] != Patch::none) feet.push_back(newton_foot(places_on_edge(patches_, at, k)[1], x, 0));
-  }
-  return feet.size() == 1 ? at : larger_gap(feet, x);
+bool SurfaceSearch::is_eligible(int patch, const Query& query) const {
+  if (query.outward == Vec<double, 3>::Zero()) return true;
+  const auto corner = [&](int k) -> Vec<double, 3> { return positions_.col(patches_[patch].vertices[k]); };
+  return area_vector<double>(patches_[patch].corners, corner).dot(query.outward) < 0;
 }
 
-Facing SurfaceSearch::nearest_facing(const std::vector<Near>& near, const Vec<double, 3>& x) const {
+/// Whether a foot is beyond an edge at which the eligible patches end.
+bool SurfaceSearch::is_past_end(const Facing& at, const Query& query) const {
+  const SurfacePatch& patch = patches_[at.patch];
+  for (int k = 0; k < patch.corners; ++k) {
+    const bool ends = !patch.goes_on[k] && (patch.across[k] == Patch::none || !is_eligible(patch.across[k], query));
+    if (ends && beyond_edge(patch.corners, k, place_of(at)) > past_border) return true;
+  }
+  return false;
+}
+
+/// What x faces if its foot on a patch lies past an edge at which the surface is not smooth.
+Facing SurfaceSearch::beyond_edges(const Facing& at, const Query& query) const {
+  const SurfacePatch& patch = patches_[at.patch];
+  if (is_past_end(at, query)) return {};
+  std::vector<Facing> feet{at};
+  for (int k = 0; k < patch.corners; ++k) {
+    const int next = patch.across[k];
+    if (patch.goes_on[k] || beyond_edge(patch.corners, k, place_of(at)) <= at_face_edge) continue;
+    if (next != Patch::none && is_eligible(next, query))
+      feet.push_back(newton_foot(places_on_edge(patches_, at, k)[1], query.x, 0));
+  }
+  return feet.size() == 1 ? at : larger_gap(feet, query.x);
+}
+
+Facing SurfaceSearch::nearest_facing(const Query& query) const {
   constexpr int hops = 8;
+  const auto near = faces_.nearest(query.x, query.outward);
   if (near.empty()) return {};
   const auto foot = [&](const Near& from, int most) {
     Facing start{from.face, from.place.at[0]};
     start.eta = from.place.at[1];
-    return newton_foot(start, x, most);
+    return newton_foot(start, query.x, most);
   };
   const Near* first = &near.front();
   for (const Near& at : near) {
     const bool is_inside = at.place.part == FacePart::inside, has_inside = first->place.part == FacePart::inside;
     if (is_inside != has_inside ? is_inside : at.face < first->face) first = &at;
   }
-  const bool is_smooth = patches_[first->face].control.size() > 0;
-  if (is_smooth) {
+  if (patches_[first->face].is_smooth()) {
     const Facing at = foot(*first, hops);
-    return at.patch == Patch::none ? at : beyond_edges(at, x);
+    return at.patch == Patch::none ? at : beyond_edges(at, query);
   }
   if (first->place.part == FacePart::inside) return foot(*first, 0);
   std::vector<Facing> feet;
   for (const Near& at : near) {
     const Facing there = foot(at, 0);
-    if (there.patch != Patch::none && !is_past_border(patches_[there.patch], place_of(there), past_border))
-      feet.push_back(there);
+    if (there.patch != Patch::none && !is_past_end(there, query)) feet.push_back(there);
   }
-  return larger_gap(feet, x);
+  return larger_gap(feet, query.x);
 }
 
 Facing SurfaceSearch::facing(const Vec<double, 3>& x, const Vec<double, 3>& outward) const {
@@ -210,18 +227,18 @@ Facing SurfaceSearch::facing(const Vec<double, 3>& x, const Vec<double, 3>& outw
   Facing at;
   at.distance = std::numeric_limits<double>::infinity();
   if (!x.allFinite()) return at;
-  const auto found = nearest_facing(faces_.nearest(x, outward), x);
-  const bool is_inside = found.patch != Patch::none && gap(found, x) < 0;
-  if (found.patch != Patch::none && !(is_inside && outward != any)) return found;
-  const auto near = faces_.nearest(x, any);
-  if (is_inside) {
-    const auto nearest = nearest_facing(near, x);
+  const Facing found = nearest_facing({x, outward});
+  if (found.patch != Patch::none) {
+    if (gap(found, x) >= 0 || outward == any) return found;
+    const Facing nearest = nearest_facing({x, any});
     if (nearest.patch == Patch::none || gap(nearest, x) < 0) return found;
   }
+  const auto near = faces_.nearest(x, any);
   if (near.empty()) return at;
-  at.distance = near.front().distance;
-  at.nearest =
-      std::min_element(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.face < b.face; })->face;
+  const auto first =
+      std::min_element(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.face < b.face; });
+  at.distance = first->distance;
+  at.nearest = first->face;
   return at;
 }
 

@@ -2,7 +2,8 @@
 ///
 /// Beyond an edge at which the normal jumps its two patches go on, each along itself, and a point that projects into
 /// neither of them has the larger of the two gaps. So the gap is continuous there, and an edge has no contact state of
-/// its own. At a corner the same holds of all patches there.
+/// its own. At a corner the same holds of all patches there. A patch that does not oppose the slave side is passed over:
+/// where it joins, the surface ends as at a border.
 #pragma once
 
 #include "core/contact/face_search.hpp"
@@ -34,9 +35,15 @@ class SurfaceSearch {
 
  private:
   using Near = FaceSearch::Near;
-  Facing nearest_facing(const std::vector<Near>& near, const Vec<double, 3>& x) const;
+  /// The search's question: which place is nearest to x among the patches that oppose `outward`, if that is not zero?
+  struct Query {
+    Vec<double, 3> x, outward;
+  };
+  bool is_eligible(int patch, const Query& query) const;
+  bool is_past_end(const Facing& at, const Query& query) const;
+  Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing at, const Vec<double, 3>& x, int hops) const;
-  Facing beyond_edges(const Facing& at, const Vec<double, 3>& x) const;
+  Facing beyond_edges(const Facing& at, const Query& query) const;
   Facing larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const;
   double gap(const Facing& at, const Vec<double, 3>& x) const;
   Eigen::Matrix3Xd arms(int patch, const Vec<double, 3>& x) const;

@@ -105,14 +105,13 @@ template <int D, class T>
 Vec<T, D> slave_normal(const std::vector<std::vector<int>>& facets, const Points<T>& points) {
   Vec<T, D> n = Vec<T, D>::Constant(T(0));
   for (const auto& facet : facets) {
-    const auto between = [&](int from, int to) -> Vec<T, D> { return points.col(facet[to]) - points.col(facet[from]); };
+    const auto corner = [&](int k) -> Vec<T, D> { return points.col(facet[k]); };
     if constexpr (D == 2) {
-      const Vec<T, 2> tau = between(0, 1);
+      const Vec<T, 2> tau = corner(1) - corner(0);
       n[0] += tau[1];
       n[1] -= tau[0];
     } else {
-      const bool is_triangle = facet.size() == 3;
-      n += T(0.5) * cross<T>(is_triangle ? between(0, 1) : between(0, 2), is_triangle ? between(0, 2) : between(1, 3));
+      n += area_vector<T>(static_cast<int>(facet.size()), corner);
     }
   }
   return n;

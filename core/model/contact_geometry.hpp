@@ -14,7 +14,7 @@ struct PlacedPoint {
   PointGeometry<T> geometry;
   /// Foot, as History::foot stores it. On an obstacle: in its frame, from the initial position of the slave node, and
   /// where ContactPoint::turns_frame the normal and the first tangent. On a curve: coordinate on the patch less
-  /// foot_reference(), on a surface the first two, and the first tangent in terms of the slopes y_s and y_t there; where
+  /// foot_reference(), on a surface the first two, and both tangents in terms of the slopes y_s and y_t there; where
   /// segment-integrated: mean initial arc length less origin_of_arcs(). What is not stored is 0.
   Feet<T, D> foot = Feet<T, D>::Constant(T(0));
   /// Motion of the foot relative to the master since the last increment, length. Slip is its tangential part.
@@ -192,30 +192,44 @@ U place_beside(const Positions<U, T, Displacement>& positions, const ContactPoin
   return place;
 }
 
-/// Place on a surface from which its feet on a patch are measured: that of its foot at the start, if the patch has it;
-/// so a small motion makes a small difference, also across an edge.
-inline Vec<double, 2> surface_reference(const ContactPoint& point, int patch) {
+/// The place of the start of a point on a patch of its surface; none where the patch does not have it.
+inline std::optional<Vec<double, 2>> start_on(const ContactPoint& point, int patch) {
   for (const Facing& start : point.starts)
-    if (start.patch == patch) return {start.xi, start.eta};
-  return Vec<double, 2>::Zero();
+    if (start.patch == patch) return Vec<double, 2>(start.xi, start.eta);
+  return std::nullopt;
 }
 
-/// Whether a patch of a surface has the place of the start of a point.
-inline bool has_start(const ContactPoint& point, int patch) {
-  return std::any_of(point.starts.begin(), point.starts.end(), [&](const Facing& at) { return at.patch == patch; });
+/// Place of a patch from which the feet of a point are measured: that of the start, if the patch has it; so a small
+/// motion makes a small difference, also across an edge.
+inline Vec<double, 2> surface_reference(const ContactPoint& point, int patch) {
+  return start_on(point, patch).value_or(Vec<double, 2>::Zero());
 }
 
-/// Stores the foot of a point on a surface: the way to it, and the first tangent in terms of the slopes.
+/// Stores the foot of a point on a surface: the way to it, and both tangents in terms of the slopes.
 template <class U>
 void keep_foot(const SurfacePlace<U>& place, const Vec<double, 2>& reference, const PatchAround<U>& around,
                PlacedPoint<U, 3>& at) {
   at.foot.template head<2>() = place.from(reference);
-  const Vec<U, 3> first = at.geometry.tangents.col(0);
   const U ss = dot(around.along_s, around.along_s), st = dot(around.along_s, around.along_t),
-          tt = dot(around.along_t, around.along_t), s = dot(first, around.along_s), t = dot(first, around.along_t);
-  const U determinant = ss * tt - st * st;
-  at.foot[2] = (tt * s - st * t) / determinant;
-  at.foot[3] = (ss * t - st * s) / determinant;
+          tt = dot(around.along_t, around.along_t), determinant = ss * tt - st * st;
+  for (int a = 0; a < 2; ++a) {
+    const Vec<U, 3> e = at.geometry.tangents.col(a);
+    const U s = dot(e, around.along_s), t = dot(e, around.along_t);
+    at.foot[2 + 2 * a] = (tt * s - st * t) / determinant;
+    at.foot[3 + 2 * a] = (ss * t - st * s) / determinant;
+  }
+}
+
+/// Tangents of the last increment, carried along with a surface that has turned and stretched since: they turn as it
+/// does in the mean, by the rotation of the polar decomposition F = R U of its tangent plane. Of the two lines f_1 = F
+/// e_1 and f_2 = F e_2, R e_1 is along f_1 - n x f_2. So no direction of the surface is better than another. Then they
+/// turn from the normal of the last foot to the present one. `last`: where keep_foot() stored them.
+template <class U, class T>
+auto carried_tangents(const PatchAround<U>& around, const T* last, const Vec<U, 3>& normal) {
+  const Vec<U, 3> across = around.cross(), before = across / norm(across);
+  const auto line = [&](int k) -> Vec<U, 3> { return U(last[k]) * around.along_s + U(last[k + 1]) * around.along_t; };
+  const Vec<U, 3> first = line(2) - cross<U>(before, line(4));
+  return carried_tangents<U>(before, first / norm(first), normal);
 }
 
 /// Place of a patch, as History::foot stores it.
@@ -268,14 +282,10 @@ PlacedPoint<U, 3> on_surface(const Positions<U, T, Displacement>& positions, con
   if (point.foot < 0) return at;
   if (earlier.patch != Patch::none) {
     const auto last = stored_place<U>(surface, point, earlier.patch, earlier.foot);
-    const bool joined = has_start(point, facing.patch) && has_start(point, earlier.patch);
+    const bool joined = start_on(point, facing.patch) && start_on(point, earlier.patch);
     at.foot_motion =
         surface_motion<U, T>(last, surface_reference(point, earlier.patch), foot.place, reference, joined, vertex);
-    const auto around = around_place<U, T>(last, vertex);
-    const Vec<U, 3> across = around.cross();
-    Vec<U, 3> first = U(earlier.foot[2]) * around.along_s + U(earlier.foot[3]) * around.along_t;
-    first /= norm(first);
-    at.geometry.tangents = carried_tangents<U>(across / norm(across), first, foot.normal);
+    at.geometry.tangents = carried_tangents<U>(around_place<U, T>(last, vertex), earlier.foot, foot.normal);
   }
   keep_foot(foot.place, reference, foot.around, at);
   return at;

@@ -111,7 +111,7 @@ struct ContactPoint {
   int components() const { return 1 + tangents; }
   /// Number of its entries in History::foot, in D dimensions. pre: it has a foot.
   int feet(int D) const {
-    if (curve >= 0) return D == 2 ? 1 : 4;
+    if (curve >= 0) return D == 2 ? 1 : 6;
     return turns_frame ? 3 * D : D;
   }
 };

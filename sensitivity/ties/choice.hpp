@@ -37,6 +37,11 @@ struct SolvedState {
   double largest;  ///< traction_scale() of the run so far. Why of the run: what was moved may be back where it was
 };
 
+/// Whether the gap of a point matters to a derivative: it presses or nearly touches, or a response asks for gaps.
+bool has_a_say(const SolvedState& of, int point);
+/// Whether a point presses by more than what is negligible.
+bool bears(const SolvedState& of, int point);
+
 /// The derivative of an equilibrium on one side of a parameter, dphi = s d, found with the choices of SolvedState::at.
 struct SidedDerivative {
   const SolvedState& of;

@@ -84,35 +84,27 @@ Direction beyond(const SurfacePlace<Direction>& foot, int edge) {
   return way;
 }
 
-bool reads_gaps(const Scene& scene) {
-  return std::any_of(scene.responses.begin(), scene.responses.end(),
-                     [](const Response& response) { return response.kind == Response::Kind::gap; });
-}
-
 }  // namespace
 
 void EdgeTie::find(const SolvedState& of, std::vector<Tie>& ties) {
   const auto& [model, slots, state, memory, rho, cone, time, largest] = of;
   if (model.dimension != 3 || !model.slides_along_curves()) return;
-  const bool all = reads_gaps(model.scene);
   const Vector<double> compact = to_compact(model, state.displacement);
   const auto positions = detail::positions_at<3>(model, slots, compact, time);
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (!is_along_surface(model, state, p)) continue;
+    if (!is_along_surface(model, state, p) || !has_a_say(of, p)) continue;
     const auto& point = model.points[p];
-    const double negligible = weak_margin * largest;
-    const bool open = state.contact.state[p] == ContactState::open;
-    if (open && elastic_traction(slots, p) * state.contact.gap[p] > negligible && !all) continue;
     const auto& surface = model.curves[point.curve];
     const auto on_patches = patches_at(surface.surface, state.contact.facing[p], weak_margin);
     if (on_patches.size() < 2) continue;
     const auto vertex = [&](int v) { return positions.template vertex<3>(surface, v); };
     const auto shape = [&](const Facing& at) { return shape_at(surface.surface[at.patch], place_of(at), vertex); };
     const Shape first = shape(on_patches[0]);
-    Vec<double, 3> tangent = Vec<double, 3>::Zero();
-    if (point.foot >= 0) tangent = first.slopes * state.history.foot.template segment<2>(point.foot + 2);
+    Eigen::Matrix<double, 3, 2> tangents = Eigen::Matrix<double, 3, 2>::Zero();
+    for (int a = 0; a < 2 && point.foot >= 0; ++a)
+      tangents.col(a) = first.slopes * state.history.foot.template segment<2>(point.foot + 2 + 2 * a);
     double turn = 0;
-    bool is_kink = false;
+    bool is_kink = !surface.surface[on_patches[0].patch].is_smooth();
     std::vector<Place> places;
     for (const Facing& facing : on_patches) {
       const Shape here = shape(facing);
@@ -120,10 +112,10 @@ void EdgeTie::find(const SolvedState& of, std::vector<Tie>& ties) {
       turn = std::max(turn, jump.turn);
       is_kink |= jump.is_kink();
       const Mat<double, 2> metric = here.slopes.transpose() * here.slopes;
-      places.push_back({facing, metric.inverse() * here.slopes.transpose() * tangent});
+      const Mat<double, 2> terms = metric.inverse() * here.slopes.transpose() * tangents;
+      places.push_back({facing, {terms(0, 0), terms(1, 0), terms(0, 1), terms(1, 1)}});
     }
-    const bool bears = -state.contact.traction[point.multiplier] > negligible;
-    if (is_kink) ties.emplace_back(EdgeTie{p, std::move(places), !bears || turn <= straight});
+    if (is_kink) ties.emplace_back(EdgeTie{p, std::move(places), !bears(of, p) || turn <= straight});
   }
 }
 
@@ -137,14 +129,14 @@ std::vector<Choice> EdgeTie::choices(const Model&) const {
 Choice EdgeTie::now(const Model&, const State<double>& at) const { return {at.contact.facing[point].patch}; }
 
 void EdgeTie::set(const Model& model, const Choice& choice, State<double>& at) const {
-  const auto& [facing, tangent] = *std::find_if(
+  const auto& [facing, tangents] = *std::find_if(
       places.begin(), places.end(), [&](const Place& place) { return place.facing.patch == choice.branch; });
   at.contact.facing[point] = facing;
   at.history.patch[point] = choice.branch;
   const auto& of = model.points[point];
   if (of.foot < 0) return;
   at.history.foot.segment<2>(of.foot) = place_of(facing) - detail::surface_reference(of, choice.branch);
-  at.history.foot.segment<2>(of.foot + 2) = tangent;
+  at.history.foot.segment<4>(of.foot + 2) = tangents;
 }
 
 Verdict EdgeTie::verdict(const SidedDerivative& derivative) const {
@@ -187,7 +179,7 @@ void for_each_edge_way(const Model& model, const Slots<Direction>& slots, const 
       const auto [here, there] = places_on_edge(surface.surface, facing, k);
       const Shape a = shape_at(*foot.patch, place_of(here), vertex),
                   b = shape_at(surface.surface[there.patch], place_of(there), vertex);
-      if (jump_between(a, b).is_kink()) f(beyond(foot, k), a.size);
+      if (!foot.patch->is_smooth() || jump_between(a, b).is_kink()) f(beyond(foot, k), a.size);
     }
   }
 }
@@ -198,7 +190,7 @@ double edge_margin(const Model& model, const State<double>& state) {
     if (state.contact.state[p] == ContactState::open || !is_along_surface(model, state, p)) continue;
     const Facing& facing = state.contact.facing[p];
     const SurfacePatch& patch = model.curves[model.points[p].curve].surface[facing.patch];
-    for (int k = 0; k < patch.corners && patch.control.size() == 0; ++k)
+    for (int k = 0; k < patch.corners && !patch.is_smooth(); ++k)
       if (patch.across[k] != Patch::none)
         least = std::min(least, std::abs(beyond_edge(patch.corners, k, place_of(facing))));
   }

@@ -3,11 +3,11 @@
 /// With the derivatives of its coordinates (s, t) on the patch that it faces, the foot of a point leaves this patch over
 /// an edge k that it is on iff s D(beyond_edge k) > 0. Then it faces the patch behind that edge.
 ///
-///   smooth   the normal goes on, and the curvature jumps (Catmull-Rom), or the point carries no traction: each side has
-///            the derivative of its patch
+///   smooth   the normal goes on, and the curvature jumps (Catmull-Rom), or on facets the way in which weights change;
+///            or the point carries no traction: each side has the derivative of its patch
 ///   turned   the force jumps with the normal. On a side on which the point keeps its patch the derivative is that of
 ///            its patch; on the other side there is none
-///   alike    the curvature goes on too: no tie
+///   alike    on a smooth surface the curvature goes on too: no tie
 /// In the plane: sensitivity/ties/vertex_tie.hpp.
 #pragma once
 
@@ -19,10 +19,10 @@ namespace stickslip {
 
 struct EdgeTie {
   static constexpr bool holds = false;  // one patch as much as the other
-  /// The place on a patch, and the first tangent there in terms of the slopes, as History::foot stores both.
+  /// The place on a patch, and the tangents there in terms of the slopes, as History::foot stores them.
   struct Place {
     Facing facing;
-    Vec<double, 2> tangent;
+    Vec<double, 4> tangents;
   };
   int point;
   std::vector<Place> places;  ///< on each patch that has it

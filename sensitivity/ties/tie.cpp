@@ -1,5 +1,6 @@
 #include "sensitivity/ties/tie.hpp"
 
+#include <algorithm>
 #include <type_traits>
 
 namespace stickslip {
@@ -18,6 +19,18 @@ std::vector<Tie> found(const SolvedState& of, HowMany wanted, std::type_identity
 constexpr std::type_identity<KindOfTie> all_kinds;
 
 }  // namespace
+
+bool has_a_say(const SolvedState& of, int point) {
+  const auto reads_gap = [](const Response& response) { return response.kind == Response::Kind::gap; };
+  const auto& responses = of.model.scene.responses;
+  return of.at.contact.state[point] != ContactState::open ||
+         elastic_traction(of.slots, point) * of.at.contact.gap[point] <= weak_margin * of.largest ||
+         std::any_of(responses.begin(), responses.end(), reads_gap);
+}
+
+bool bears(const SolvedState& of, int point) {
+  return -of.at.contact.traction[of.model.points[point].multiplier] > weak_margin * of.largest;
+}
 
 std::vector<Tie> ties_of(const SolvedState& of) { return found(of, HowMany::all, all_kinds); }
 

@@ -69,30 +69,21 @@ void for_each_vertex(const Model& model, const State<double>& state, int p, F&& 
   }
 }
 
-bool reads_gaps(const Scene& scene) {
-  return std::any_of(scene.responses.begin(), scene.responses.end(),
-                     [](const Response& response) { return response.kind == Response::Kind::gap; });
-}
-
 }  // namespace
 
 void VertexTie::find(const SolvedState& of, std::vector<Tie>& ties) {
   const auto& [model, slots, state, memory, rho, cone, time, largest] = of;
   if (!model.slides_along_curves()) return;
-  const bool all = reads_gaps(model.scene);
   const Vector<double> compact = to_compact(model, state.displacement);
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
-    const double negligible = weak_margin * largest;
-    const bool open = state.contact.state[p] == ContactState::open;
-    const bool touches = open && elastic_traction(slots, p) * state.contact.gap[p] <= negligible;
-    if (open && !touches && !all) continue;
-    const bool bears = -state.contact.traction[point.multiplier] > negligible;
+    if (!has_a_say(of, p)) continue;
+    const bool presses = bears(of, p);
     for_each_vertex(model, state, p, [&, &model = model, &slots = slots, time = time](int first, int second) {
       const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
       if (!changes_at(model.curves[point.curve].patches[first], at.bend)) return;
       if (std::abs(at.overshoot) <= weak_margin)
-        ties.emplace_back(VertexTie{p, first, second, !bears || at.turn <= straight});
+        ties.emplace_back(VertexTie{p, first, second, !presses || at.turn <= straight});
     });
   }
 }

@@ -34,10 +34,9 @@ std::string ratio_text(const Study& study) {
     values += fmt::format("{}{}{}", values.empty() ? "" : ", ", number(ratio, 2), mesh.empty() ? "" : " for " + mesh);
   return fmt::format(
       "Work is factorisations plus r times back-solves, those of derivatives included where derivatives are compared. "
-      "r is "
-      "the time of one back-solve over that of one factorisation, measured in this study over all its runs on a mesh: "
-      "{}. "
-      "Another study, or another run of this one, measures another r; its counts are the same.",
+      "r is the time of one back-solve over that of one factorisation, measured in this study over all its runs on a "
+      "mesh: "
+      "{}. Another study, or another run of this one, measures another r; its counts are the same.",
       values);
 }
 

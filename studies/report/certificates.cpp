@@ -76,8 +76,7 @@ std::string certificates_of_study(const Study& study) {
   return "<p>Solutions of other programs, and of the runs, under one certificate: each law is checked by code that "
          "shares nothing with the solver (<code>stickslip verify</code>). The law is shown that is nearest to its "
          "bound. A point counts as pressing if its pressure is more than 1e-6 of the largest traction, whatever "
-         "accuracy a "
-         "solution claims. Differences are of responses, over their largest values.</p>\n" +
+         "accuracy a solution claims. Differences are of responses, over their largest values.</p>\n" +
          compact_html(table, "Certificates");
 }
 

@@ -165,8 +165,7 @@ std::optional<Plate> map_of_changes(const Study& run) {
   std::string text =
       "Steps to the right, parameters downwards: by what share of its value a parameter may change before some point "
       "opens, closes, slips, sticks, yields or passes to another facet, to first order. At a step with \"two sides\" "
-      "the "
-      "derivatives from below and from above differ.";
+      "the derivatives from below and from above differ.";
   if (all > most) text += fmt::format(" The first {} of {} parameters.", most, all);
   const double bottom = MapLayout::top + MapLayout::row * static_cast<double>(parameters.size() + 1) + 24;
   Plate plate{"nearest-change", title, text, Drawing(MapLayout::width, bottom + 38, title, text), {}};

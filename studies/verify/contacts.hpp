@@ -266,9 +266,7 @@ class Contact {
       if (faces_ && on_curve) {
         const Eigen::JacobiSVD<Mat3> deformed(faces_->frame(last.place) * last.frame.inverse(),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
-        const Vec3 stretch = deformed.singularValues();
         turn = deformed.matrixU() * deformed.matrixV().transpose();
-        touch.unsure = (stretch[0] - stretch[2]) / (stretch[0] + stretch[2]);
       }
       touch.turned = Eigen::Quaterniond::FromTwoVectors(turn * last.normal, touch.normal).matrix() * turn;
     }

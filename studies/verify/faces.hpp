@@ -139,12 +139,15 @@ class Faces {
     return near;
   }
 
-  /// Whether x is past an edge that no other face has: at finite strain by more than a hundredth of a face.
-  bool is_past_border(const Near& here, const Vec3& x) const {
+  /// Whether x is past an edge at which the faces that oppose a side end: at finite strain by more than a hundredth of a
+  /// face.
+  bool is_past_border(const Near& here, const Vec3& x, const Vec3& outward) const {
     const auto& [p, s, t] = here.place;
     const Eigen::VectorXd off = from_edges(patches_[p].sides(), s, t);
     for (int j = 0; j < off.size(); ++j) {
-      if (!patches_[p].border[j] || off[j] > (finite_ ? -0.01 : at_end)) continue;
+      const int other = patches_[p].beyond[j];
+      const bool ends = other == FacePatch::none || (finite_ && other >= 0 && outward.dot(boxes_[other][2]) > 0);
+      if (!ends || off[j] > (finite_ ? -0.01 : at_end)) continue;
       const Vec3 along = jet(p, {s, t}).rightCols<2>() * edge_along(patches_[p].sides(), j);
       if (finite_ || (x - here.y).dot(along.cross(here.normal).normalized()) > 1e-6 * size(p)) return true;
     }
@@ -157,7 +160,7 @@ class Faces {
     for (const auto& at : finite_ ? std::exchange(near, {}) : std::vector<Near>{})
       if (const auto on = across(at.place.patch, {at.place.xi, at.place.eta}, Eigen::Matrix2d::Identity(), x))
         near.push_back(this->near(at.place.patch, *on, x));
-    if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(at, x); })) return false;
+    if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(at, x, outward); })) return false;
     if (!finite_) std::erase_if(near, [&](const Near& at) { return outward.dot(at.normal) >= 0; });
     if (!finite_ || near.empty()) return !near.empty();
     std::ranges::sort(near, {}, [](const Near& at) { return at.place.patch; });

@@ -60,14 +60,13 @@ struct Seeker {
 /// traction and the springs are of whoever solved it.
 struct Touch : Foot {
   int node = -1;
-  double area = 0;                 ///< of the start, on which its traction acts
-  Vec3 slip = Vec3::Zero();        ///< of this increment, across the normal
-  bool slip_known = false;         ///< false: it faced nothing before
-  Mat3 turned = Mat3::Identity();  ///< of directions across the normal in this increment
-  double unsure = 0;               ///< sine of what lines on a master that deforms turn by, more or less than that
-  Mat3 frame = Mat3::Identity();   ///< y_s, y_t and n, on a master in space that deforms
-  double opening = 0;              ///< of the gap in this increment
-  Vec3 carried = Vec3::Zero();     ///< motion of an obstacle's surface there in this increment
+  double area = 0;                                       ///< of the start, on which its traction acts
+  Vec3 slip = Vec3::Zero();                              ///< of this increment, across the normal
+  bool slip_known = false;                               ///< false: it faced nothing before
+  Mat3 turned = Mat3::Identity();                        ///< of directions across the normal in this increment
+  Mat3 frame = Mat3::Identity();                         ///< y_s, y_t and n, on a master in space that deforms
+  double opening = 0;                                    ///< of the gap in this increment
+  Vec3 carried = Vec3::Zero();                           ///< motion of an obstacle's surface there in this increment
   Vec3 relative = Vec3::Zero(), tangent = Vec3::Zero();  ///< w of small strain; m of segments
   double along = 0;                                      ///< Z of segments
   Weights slave = {};                                    ///< weights of the slave's nodes, without those of the master

@@ -22,9 +22,10 @@ namespace stickslip::verify {
 
 /// A patch goes once around its corners, counter-clockwise from outside. Triangles 0 <= s, t, s + t <= 1.
 struct FacePatch {
-  Nodes face, nodes;         ///< corners; those that the patch is made of
-  Eigen::MatrixXd weigh;     ///< W by node and c
-  std::vector<char> border;  ///< whether no other face has an edge
+  Nodes face, nodes;      ///< corners; those that the patch is made of
+  Eigen::MatrixXd weigh;  ///< W by node and c
+  static constexpr int none = -1, smooth = -2;
+  std::vector<int> beyond;  ///< per edge: the face behind a crease; none: a border; smooth: the surface goes on
   int sides() const { return static_cast<int>(face.size()); }
 };
 
@@ -206,7 +207,11 @@ class Patchwork {
     std::vector<Vertex> vertices;
     for (int j = 0; j < m; ++j) {
       vertices.push_back(vertex({f, j}, number));
-      patch.border.push_back(!left_.contains({node(f, j + 1), node(f, j)}));
+      const auto other = left_.find({node(f, j + 1), node(f, j)});
+      const bool is_crease_here = is_crease(edge({f, j}, false));
+      patch.beyond.push_back(other == left_.end() ? FacePatch::none
+                             : is_crease_here     ? other->second[0]
+                                                  : FacePatch::smooth);
     }
     for (int j = 0; j < m; ++j) {
       const auto& [p, spoke, twist, c] = vertices[j];

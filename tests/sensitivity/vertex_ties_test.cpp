@@ -2,6 +2,7 @@
 /// the whole run on either side.
 #include "sensitivity/ties/vertex_tie.hpp"
 #include "tests/support/both_modes.hpp"
+#include "tests/support/extruded.hpp"
 #include "tests/support/sides.hpp"
 
 namespace stickslip {
@@ -55,6 +56,14 @@ TEST(VertexTies, OfFacetsInLineHaveTheSidesOfTheRun) {
   }
   ask_for_objectives(scene);
   EXPECT_LE(difference_of_modes(scene, MonolithicAL{}), 1e-11);  // rounding, as where nothing ties
+}
+
+TEST(EdgeTies, OfFacesInLineHaveTheSidesOfTheRun) {
+  const Scene scene = extruded(matching_blocks(Smoothing::none));  // each node at a corner of two faces, at the border
+  for (const auto& scheme : named_methods()) {
+    SCOPED_TRACE(scheme.name);
+    EXPECT_GT(expect_sides(scene, scheme), 1);
+  }
 }
 
 TEST(VertexTies, AreNoneOfABSpline) {

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "core/contact/surface_search.hpp"
+#include "core/model/contact_geometry.hpp"
 #include "tests/support/largest.hpp"
 
 namespace stickslip::surface_test {
@@ -254,6 +255,43 @@ TEST(SurfaceSearch, EndsAtBordersAndPassesCreasesContinuously) {
       last = gap;
     }
   }
+}
+
+TEST(SurfaceSearch, EndsAtARidgeWhoseOtherFaceDoesNotOpposeTheSlave) {
+  // The top of a box, and a wall that goes down from it: a slave side that looks down faces the top alone.
+  const Net box = sheet(
+      3, 2, [](int i, int) { return i == 3 ? -1.0 : 0.0; }, [](int, int) { return false; });
+  Net net = box;
+  for (Eigen::Index v = 0; v < net.points.cols(); ++v)
+    if (net.points(0, v) == 3) net.points(0, v) = 2;  // the wall is upright
+  for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom}) {
+    const auto patches = make_surface(net.faces, kind, 30, net.points);
+    const SurfaceSearch search(patches, net.points);
+    EXPECT_NE(search.facing({1.9, 1.0, -0.1}, {0, 0, -1}).patch, Patch::none);
+    EXPECT_EQ(search.facing({2.2, 1.0, -0.1}, {0, 0, -1}).patch, Patch::none);
+    EXPECT_NE(search.facing({2.2, 1.0, -0.1}, {-1, 0, -1}).patch, Patch::none);  // both oppose this one
+  }
+}
+
+TEST(Surface, CarriesTangentsWhateverTheirDirections) {
+  // What a surface that is sheared and turned makes of tangents e is turned by as much as e are turned.
+  const Vec<double, 3> s(1.2, 0.1, 0.05), t(-0.1, 0.8, 0.2);  // slopes of the last increment
+  detail::PlacedPoint<double, 3> at;
+  const PatchAround<double> before{Vec<double, 3>::Zero(), s, t},
+      now{Vec<double, 3>::Zero(), {1.1, 0.5, -0.2}, {-0.6, 0.9, 0.3}};
+  const Vec<double, 3> n0 = before.cross().normalized(),
+                       n = (now.cross().normalized() + Vec<double, 3>(0.1, 0, 0)).normalized();
+  const auto carried = [&](double angle) {
+    at.geometry.tangents = detail::tangent_frame<double>(Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>(n0));
+    const Vec<double, 3> a = at.geometry.tangents.col(0), b = at.geometry.tangents.col(1);
+    at.geometry.tangents.col(0) = std::cos(angle) * a + std::sin(angle) * b;
+    at.geometry.tangents.col(1) = std::cos(angle) * b - std::sin(angle) * a;
+    detail::keep_foot<double>({}, Vec<double, 2>::Zero(), before, at);
+    return Vec<double, 3>(detail::carried_tangents<double>(now, at.foot.data(), n).col(0));
+  };
+  const Vec<double, 3> first = carried(0), across = n.cross(first);
+  for (const double angle : {0.4, 1.3, 2.9})
+    EXPECT_LE((carried(angle) - std::cos(angle) * first - std::sin(angle) * across).norm(), 1e-14);  // rounding
 }
 
 using Complex = std::complex<double>;
