@@ -110,11 +110,11 @@ struct Scheme {
   Required<double> error;               ///< relative, that it is allowed; 0: rounding alone
 };
 
-/// What "auto" stands for, in multiples of the local nodal stiffness, if contact keeps the geometry of the start, and
-/// if it has that of the present.
+/// What "auto" stands for, in multiples of the local nodal stiffness, if normals keep their directions, as those of
+/// planes and all at small strain do, and if they turn.
 struct AutomaticMultiple {
-  double initial, current;
-  constexpr double of(bool current_geometry) const { return current_geometry ? current : initial; }
+  double fixed, turning;
+  constexpr double of(bool normals_turn) const { return normals_turn ? turning : fixed; }
 };
 
 struct Penalty {
@@ -178,7 +178,7 @@ struct UzawaAL {
   Regularisation scale;
   double tolerance = 1e-10;     ///< error left in the multiplier (relative), and violation; 0 < tolerance < 1
   int max_augmentations = 200;  ///< inner solves per increment; >= 1
-  bool adapt = true;            ///< multiply rho by 4 where an augmentation did not shrink the violation by 4
+  bool adapt = true;            ///< multiply rho by 4 where an augmentation left much of the violation
   Acceleration acceleration = Acceleration::none;  ///< of the updates of lambda (methods/augmentation/acceleration.hpp)
   Cone cone = Cone::augmented;  ///< radius -mu z_N (augmented), or -mu lambda_N of the last augmentation (frozen)
   Sensitivity sensitivity = Sensitivity::iterated;
@@ -188,15 +188,15 @@ struct UzawaAL {
   static constexpr auto keys() {
     return std::tuple{
         Key{&UzawaAL::scale, "scale",
-            "rho in multiples of the local nodal stiffness (auto: 100, or 10 at finite strain), or absolute",
+            "rho in multiples of the local nodal stiffness (auto: 100, or 10 if normals turn: at finite strain, but on "
+            "planes), or absolute",
             RhoOption{}},
         Key{&UzawaAL::tolerance, "tolerance",
             "relative error left in the multiplier, and violation, at which the updates stop",
             Setting{Range::below_one}},
         Key{&UzawaAL::max_augmentations, "max_augmentations",
             "of an increment; beyond: status cap, with the last iterate as the result", AtLeastOne{}},
-        Key{&UzawaAL::adapt, "adapt",
-            "multiplies rho by 4 where an augmentation left more than a quarter of the violation", Flag{}},
+        Key{&UzawaAL::adapt, "adapt", "multiplies rho by 4 where an augmentation left much of the violation", Flag{}},
         Key{&UzawaAL::acceleration, "acceleration",
             "extrapolation of the updates; anderson takes several of the last, aitken two",
             std::array{"none", "aitken", "anderson"}},

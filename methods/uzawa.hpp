@@ -45,7 +45,7 @@ class AugmentationLoop {
         resumed_(start.resumed(previous)),
         progress_(run.model, run.slots, method.acceleration),
         accelerator_(method.acceleration) {
-    increment_.rho_factor = std::move(rho_factor);
+    increment_.rho_factor = first_factors(run.slots, initial_, std::move(rho_factor));
     // (The truncated scheme differentiates the loop from the lambda of the last increment on, so the loop begins
     // there.)
     const State<T>& with_lambda = truncated_ && !start.is_step() ? previous : start.state;
@@ -124,7 +124,7 @@ class AugmentationLoop {
     inexact_ &= !status_.done;
     const bool raised = method_.adapt && progress_.has_same_states() && !status_.done &&
                         adapt(run_.slots, initial_, progress_.last_violations(), progress_.violations(),
-                              status_.negligible, increment_.rho_factor);
+                              status_.negligible, !start_.moves(), increment_.rho_factor);
     if (raised) {  // another rho is another map
       accelerator_ = Accelerator<T>(method_.acceleration);
       progress_.change_map();
@@ -167,8 +167,7 @@ Increment<T> UzawaAL::solve_increment(Run<T>& run, const State<T>& previous, con
                                       double time, const Start<T>& start) const {
   UzawaAL method = *this;
   method.tolerance = start.tolerance(tolerance);
-  auto factor = previous_factor.empty() ? std::vector<double>(run.model.points.size(), 1.0) : previous_factor;
-  return detail::AugmentationLoop<T>(method, run, previous, std::move(factor), time, start).solve();
+  return detail::AugmentationLoop<T>(method, run, previous, previous_factor, time, start).solve();
 }
 
 }  // namespace stickslip

@@ -1,20 +1,18 @@
-/// Slots and bodies in the scalar of direct differentiation, and the elements that parameters touch.
+/// Slots in the scalar of direct differentiation, and the elements that parameters touch.
 #include <numeric>
 
 #include "core/engine/body_matrix.hpp"
-#include "core/model/element_kernels_impl.hpp"
 #include "sensitivity/differentiation.hpp"
 
 namespace stickslip {
 
 STICKSLIP_SLOTS(, Direction);
-STICKSLIP_ELEMENTS(Direction);
 
 namespace {
 
 /// Whether the numbers of a law have no derivative; false if the law does not list them.
 const auto has_no_derivative = []<class L>(const L& law) {
-  if constexpr (!Remembers<L> && requires { law.numbers(); }) return detail::is_constant(law.numbers());
+  if constexpr (!Remembers<L> && requires { law.numbers(); }) return are_constant(law.numbers());
   return false;
 };
 

@@ -1,10 +1,8 @@
-#include "core/model/element_kernels_impl.hpp"
+#include "core/model/with_law.hpp"
 #include "core/solids/element_work.hpp"
 #include "sensitivity/pull_back.hpp"
 
 namespace stickslip {
-
-STICKSLIP_ELEMENTS(Reverse);
 
 namespace {
 

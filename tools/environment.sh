@@ -9,9 +9,9 @@ for folder in /usr/lib/*/openblas-serial; do
 done
 export OPENBLAS_NUM_THREADS=1
 
-# A source with Eigen in it takes up to 1.5 GB to compile.
+# Sixteen sources with Eigen in them take up to 2 GB to compile.
 memory_kib=$(awk '/^MemAvailable:/ {print $2}' /proc/meminfo 2>/dev/null || echo 0)
-jobs=$((${memory_kib:-0} / 1572864))
+jobs=$((${memory_kib:-0} / 2097152))
 cores=$(nproc)
 [ "$jobs" -le "$cores" ] || jobs=$cores
 [ "$jobs" -ge 1 ] || jobs=1

@@ -143,7 +143,7 @@ FAULTS = [
     ("a load that is no scale of forces", "studies/run/metrics.cpp", "if (<<<!(largest_nodal_norm(loads, D) > rounding)>>>)", "true"),
     ("rounding ends no augmentations", "methods/augmentation/augmentation_status.hpp", "<<<noise > 0>>> && progress.is_stalled()", "false"),
     ("derivatives of a motion dropped where geometry and material have none", "core/model/element_kernels_impl.hpp",
-     "!is_constant(numbers) || <<<!is_constant(u)>>>)", "false"),
+     "!are_constant(numbers) || <<<!are_constant(u)>>>)", "false"),
     ("side that moves half as far", "core/model/slots_impl.hpp",
      "points(i, first + n) += <<<T(share[n] * velocity.direction[i])>>>", "T(0.5 * share[n] * velocity.direction[i])"),
     # responses, objectives

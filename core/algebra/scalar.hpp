@@ -125,6 +125,11 @@ template <int N>
 bool is_constant(const Dual<N>& x) {
   return (x.d == 0).all();
 }
+/// The same of an array or a matrix.
+template <class A>
+bool are_constant(const A& entries) {
+  return std::all_of(entries.data(), entries.data() + entries.size(), [](const auto& x) { return is_constant(x); });
+}
 /// Whether is_constant can tell.
 template <class T>
 inline constexpr bool tells_constants = false;

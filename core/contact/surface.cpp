@@ -68,8 +68,8 @@ std::vector<char> border_corners(const std::vector<SurfacePatch>& patches, const
   std::vector<char> is_corner(static_cast<std::size_t>(positions.cols()), 0);
   const double least = least_cosine(corner);
   for (const auto& [a, others] : ends) {
-    const auto along = [&](int k) -> Vec<double, 3> {
-      return (positions.col(others[k]) - positions.col(a)).normalized();
+    const auto along = [&positions, from = a, &to = others](int k) -> Vec<double, 3> {
+      return (positions.col(to[k]) - positions.col(from)).normalized();
     };
     is_corner[a] = others.size() != 2 || -along(0).dot(along(1)) < least;
   }

@@ -21,23 +21,16 @@ ElementMemory<T> memory_of_element(const BodyMesh& body, int e, const Vector<T>&
   return {};
 }
 
-/// Whether no derivative rides on any entry.
-template <class A>
-bool is_constant(const A& entries) {
-  return std::all_of(entries.data(), entries.data() + entries.size(),
-                     [](const auto& x) { return stickslip::is_constant(x); });
-}
-
 /// Forces of one element of a continuum. Derivatives are computed only of what depends on parameters: most parameters
 /// touch few elements, and those of a material touch no gradient.
 template <class T, class Shape, Kinematics kinematics, class L>
 Nodal<T, Shape> forces_of_element(const L& law, const Nodal<T, Shape>& coordinates, const Nodal<T, Shape>& u,
                                   const T& thickness, const ElementMemory<T>& memory) {
   if constexpr (tells_constants<T> && !Remembers<L>) {
-    if (stickslip::is_constant(thickness) && is_constant(coordinates)) {
+    if (is_constant(thickness) && are_constant(coordinates)) {
       const Nodal<double, Shape> fixed = values(coordinates);
       const auto numbers = law.numbers();
-      if (!is_constant(numbers) || !is_constant(u))
+      if (!are_constant(numbers) || !are_constant(u))
         return element_forces<T, Shape, kinematics, double>(law, fixed, u, value(thickness));
       std::array<double, std::tuple_size_v<std::decay_t<decltype(numbers)>>> plain;
       std::transform(numbers.begin(), numbers.end(), plain.begin(), [](const T& x) { return value(x); });

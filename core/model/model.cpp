@@ -459,6 +459,10 @@ Model make_model(const Scene& scene, Seconds& spent) {
   const bool is_linear = moves_linearly(model);
   model.effects.linear_bulk = is_linear || has_constant_stiffness(scene);
   model.effects.current_geometry = scene.finite_strain && !is_linear && !model.points.empty();
+  const auto is_on_plane = [&](const ContactPoint& point) {
+    return point.obstacle >= 0 && is_flat(scene.obstacles[point.obstacle].shape);
+  };
+  model.effects.normals_turn = model.effects.current_geometry && !std::ranges::all_of(model.points, is_on_plane);
   if (model.effects.current_geometry) place_feet(model);
   return model;
 }

@@ -144,6 +144,7 @@ struct Effects {
   /// The internal forces are linear in the displacements: the tangent of the bodies is constant.
   bool linear_bulk = true;
   bool current_geometry = false;  ///< gap, normal and slip have present geometry (finite strain)
+  bool normals_turn = false;      ///< with the motion, of present geometry: some master is no plane
 };
 
 /// Nodes and facets of a side expression, in the numbering of the model.

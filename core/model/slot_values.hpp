@@ -46,9 +46,9 @@ struct Slots {
   std::vector<Matrix<T>> frames;           ///< per framed node: D x D, frame vectors as columns
   std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle per degree of rotation,
                                            ///< length; empty: no obstacle rotates
-  std::vector<Vector<T>> arcs;    ///< per curve that is integrated: initial arc length along it to the beginning
-                                  ///< of each facet, and of all; empty for another; no entry: none is
-  bool current_geometry = false;  ///< of the model's effects
+  std::vector<Vector<T>> arcs;  ///< per curve that is integrated: initial arc length along it to the beginning
+                                ///< of each facet, and of all; empty for another; no entry: none is
+  bool normals_turn = false;    ///< of the model's effects
 };
 
 /// Gap of a point, length, up to which it counts as zero. If the initial gap is not exactly zero: the rounding of the

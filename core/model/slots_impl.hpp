@@ -192,7 +192,7 @@ template <class T>
 Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> points,
                     const std::vector<double>* stiffness) {
   Slots<T> slots = make_body_slots(model, numbers, std::move(points));
-  slots.current_geometry = model.effects.current_geometry;
+  slots.normals_turn = model.effects.normals_turn;
   for (const auto& contact : model.scene.contacts)
     slots.friction.push_back(contact.friction ? contact.friction->template as<T>(numbers) : FrictionLaw<T>());
   if (std::any_of(model.curves.begin(), model.curves.end(), [](const auto& curve) { return curve.is_integrated(); }))

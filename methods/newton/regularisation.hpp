@@ -38,7 +38,7 @@ RegularisationField<T> regularisation(const Slots<T>& slots, const Regularisatio
 /// rho of a method's options before any adaption.
 template <class T, WholeMethod M>
 RegularisationField<T> initial_regularisation(const Slots<T>& slots, const M& method) {
-  return regularisation(slots, method.regularisation(), M::automatic_multiple.of(slots.current_geometry),
+  return regularisation(slots, method.regularisation(), M::automatic_multiple.of(slots.normals_turn),
                         slots.numbers(method.tangential_share()));
 }
 

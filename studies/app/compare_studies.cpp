@@ -165,17 +165,17 @@ json to_json(const CellComparison& cell) {
           {"seconds", {cell.seconds_before, cell.seconds_after}}};
 }
 
-std::string shown(const json& value, int digits) {
+std::string in_digits(const json& value, int digits) {
   return value.is_number_float() ? fmt::format("{:.{}g}", value.get<double>(), digits)
          : value.is_string()     ? value.get<std::string>()
                                  : json_text(value);
 }
 
 /// Both values, with as many digits as tell them apart.
-std::pair<std::string, std::string> shown(const Change& change) {
+std::pair<std::string, std::string> in_digits(const Change& change) {
   constexpr int fewest = 3, all = 17;
   for (int digits = fewest;; ++digits)
-    if (std::pair texts{shown(change.before, digits), shown(change.after, digits)};
+    if (std::pair texts{in_digits(change.before, digits), in_digits(change.after, digits)};
         texts.first != texts.second || digits == all)
       return texts;
 }
@@ -210,7 +210,7 @@ void print(const std::vector<CellComparison>& cells) {
         if (others < 0) continue;
         if (others > 0) more = fmt::format(" (and {} more)", others);
       }
-      const auto [before, after] = shown(change);
+      const auto [before, after] = in_digits(change);
       line(cell, change.quantity + more, before, after, change.worse);
     }
   }

@@ -62,7 +62,7 @@ Entry entry_of(const json& budget, const std::string& name) {
 std::string series_name(const std::string& part, double value) { return part + (value > 0 ? " (+)" : " (-)"); }
 
 /// A mark for each entry of each budget.
-json rows_of(const Study& study) {
+json marks_of(const Study& study) {
   json rows = json::array();
   for (const auto& cell : study.cells) {
     const std::string knob = running_knob(study, cell.family);
@@ -218,7 +218,7 @@ std::optional<Figure> error_budget(const Study& study) {
       "along "
       "the part that this option does not lessen. The interaction is what the parts leave of the error. What is less "
       "than its noise, or exactly zero, is not drawn.";
-  figure.rows = rows_of(study);
+  figure.rows = marks_of(study);
   if (figure.rows.empty()) return std::nullopt;
   figure.series = series_of_parts();
   for (const std::string& panel : distinct(figure.rows, "panel")) {

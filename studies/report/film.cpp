@@ -64,13 +64,13 @@ std::vector<Look> looks_of(const std::vector<Strip>& strips) {
   return out;
 }
 
-constexpr double strip_height = 170, gap = 20, head = 20, foot = 30, small = 10, aside = 5;
+constexpr double strip_height = 170, gutter = 20, head = 20, foot = 30, small = 10, aside = 5;
 
 /// One or two strips side by side over the whole width.
 struct Layout {
   std::size_t columns;
   double canvas, indent, strip_width;
-  double cell_width() const { return indent + strip_width + gap; }
+  double cell_width() const { return indent + strip_width + gutter; }
 };
 
 Layout layout_of(const std::vector<Strip>& strips) {
@@ -79,7 +79,7 @@ Layout layout_of(const std::vector<Strip>& strips) {
   for (const auto& strip : strips)
     for (const double time : strip.times) out.indent = std::max(out.indent, text_width(number(time), small));
   out.indent += 2 * aside;
-  out.strip_width = out.canvas / static_cast<double>(out.columns) - out.indent - gap;
+  out.strip_width = out.canvas / static_cast<double>(out.columns) - out.indent - gutter;
   return out;
 }
 

@@ -204,7 +204,7 @@ std::optional<double> option_as_used(const Cell& cell, const std::string& name) 
   const auto method = default_method(cell.family);
   if (*value != "auto" || !method || (name != "stiffness" && name != "scale")) return std::nullopt;
   if (const json& automatic = at(cell.record, "automatic"); automatic.is_number()) return automatic.get<double>();
-  return std::visit([](const auto& m) { return m.automatic_multiple.initial; }, *method);
+  return std::visit([](const auto& m) { return m.automatic_multiple.fixed; }, *method);
 }
 
 /// Gives runs of a method that leave out an option which others of it sweep, or say "auto", their place among them.

@@ -175,7 +175,8 @@ std::string explain(const Input& input, const Problem& problem) {
   if (effects.friction) text += "  friction, path dependent (slip is remembered)\n";
   if (scene.finite_strain) text += "  finite strain\n";
   if (effects.plasticity) text += "  plasticity, path dependent (plastic strains are remembered)\n";
-  if (effects.current_geometry) text += "  large sliding, normals that turn\n";
+  if (effects.current_geometry) text += "  large sliding\n";
+  if (effects.normals_turn) text += "  normals that turn\n";
   if (effects.deformable_master) text += "  contact between deformable bodies\n";
   if (effects.smoothing) text += "  smooth masters\n";
   const bool adjoint = scene.sensitivity_mode == SensitivityMode::adjoint;

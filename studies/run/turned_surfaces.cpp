@@ -51,7 +51,8 @@ std::optional<Warning> turned_surface(const Problem& problem, int c) {
   constexpr double alike_from =
       0.5;                          // cosine of the two normals: a side that is steeper may come to touch with its end
   constexpr double against = 1e-9;  // cosine: less is a side along the obstacle's normal, to rounding
-  const auto& [model, slots, unused] = problem;
+  const Model& model = problem.model;
+  const auto& slots = problem.slots;
   const auto& contact = model.scene.contacts[c];
   const Obstacle* const obstacle = obstacle_of(model, c);
   if (!obstacle || model.dimension != 2) return std::nullopt;

@@ -87,8 +87,8 @@ void multiply_stiffness(Method& method, Scene& scene, double factor) {
     rho.value.value *= factor;
     if (rho.value.slot >= 0) scene.numbers[static_cast<std::size_t>(rho.value.slot)] *= factor;
   };
-  const bool current_geometry = scene.finite_strain && make_model(scene).effects.current_geometry;
-  std::visit([&](auto& chosen) { multiply(chosen.regularisation(), chosen.automatic_multiple.of(current_geometry)); },
+  const bool normals_turn = scene.finite_strain && make_model(scene).effects.normals_turn;
+  std::visit([&](auto& chosen) { multiply(chosen.regularisation(), chosen.automatic_multiple.of(normals_turn)); },
              method);
 }
 

@@ -74,17 +74,17 @@ void set_method(CellInput& cell, const MethodSweep& method, const std::vector<st
 template <class F>
 void for_each_variant(const Study& study, F&& f) {
   for (const StudyScene& scene : study.scenes)
-    for (const auto& [level, level_place] : study.refine)
+    for (const auto& refined : study.refine)
       for_each_combination(sizes_of(study.vary), [&](const std::vector<std::size_t>& places) {
         CellInput variant;
         variant.document = scene.document;
         variant.scene = scene.file;
-        variant.refine = level.template get<int>();
+        variant.refine = refined.value.template get<int>();
         for (std::size_t i = 0; i < places.size(); ++i) {
           set_varied(variant.document, study.vary[i], places[i]);
           for (const Knob& knob : study.vary[i].knobs) variant.vary[knob.pointer] = knob.values[places[i]].value;
         }
-        refine_meshes(variant.document, variant.refine, level_place);
+        refine_meshes(variant.document, variant.refine, refined.place);
         f(variant);
       });
 }

@@ -25,11 +25,11 @@ namespace {
 using nlohmann::json;
 
 /// Whether a method runs as it does without any option; "auto" and the number it stands for are the same.
-bool is_default(Method method, bool current_geometry) {
+bool is_default(Method method, bool normals_turn) {
   std::visit(
       [&](auto& m) {
         auto& rho = m.regularisation();
-        if (rho.kind == Regularisation::Kind::relative && rho.value.value == m.automatic_multiple.of(current_geometry))
+        if (rho.kind == Regularisation::Kind::relative && rho.value.value == m.automatic_multiple.of(normals_turn))
           rho.kind = Regularisation::Kind::automatic;
       },
       method);
@@ -75,7 +75,7 @@ json brief(const json& steps) {
 }
 
 /// What a row says of its cell, however it went.
-json head_of(const CellInput& cell, bool current_geometry) {
+json head_of(const CellInput& cell, bool normals_turn) {
   json head = place_of(cell);
   head["id"] = cell.id;
   head["scene_hash"] = fingerprint(cell.canonical);
@@ -84,8 +84,8 @@ json head_of(const CellInput& cell, bool current_geometry) {
     return head;
   }
   head["method"] = to_json(cell.method);
-  head["default"] = is_default(cell.method, current_geometry);
-  head["automatic"] = std::visit([&](const auto& m) { return m.automatic_multiple.of(current_geometry); }, cell.method);
+  head["default"] = is_default(cell.method, normals_turn);
+  head["automatic"] = std::visit([&](const auto& m) { return m.automatic_multiple.of(normals_turn); }, cell.method);
   return head;
 }
 
@@ -232,8 +232,8 @@ ReferenceValues CellRunner::reference_of(const CaseResult& result) const {
 }
 
 /// By the strain, where there is no model to ask.
-bool CellRunner::has_current_geometry(const CellInput& cell) const {
-  return variant_.problem && variant_.key == variant_key(cell) ? variant_.problem->model.effects.current_geometry
+bool CellRunner::normals_turn(const CellInput& cell) const {
+  return variant_.problem && variant_.key == variant_key(cell) ? variant_.problem->model.effects.normals_turn
                                                                : cell.document.root().value("strain", "") == "finite";
 }
 
@@ -249,7 +249,7 @@ json CellRunner::row(std::size_t index) {
 }
 
 json CellRunner::failed_row(std::size_t index, const std::string& status, const std::string& message) const {
-  json row = head_of(cells_[index], has_current_geometry(cells_[index]));
+  json row = head_of(cells_[index], normals_turn(cells_[index]));
   row["status"] = status;
   row["message"] = message;
   row["errors"] = {{"enforcement", json::object()}, {"discretization", json::object()}};
@@ -262,7 +262,7 @@ json CellRunner::failed_row(std::size_t index, const std::string& status, const 
 json CellRunner::peer_row(const CellInput& cell) {
   const Input input = input_of(cell, meshes_);
   const MeasuredPeer peer = measured(*cell.peer, input.document, variant_.problem, input.method);
-  json row = head_of(cell, has_current_geometry(cell));
+  json row = head_of(cell, normals_turn(cell));
   row.update(row_of(peer));
   row["errors"] = errors(peer.result);
   if (asked_for("kkt", study_.errors)) row["errors"]["kkt"] = errors_of(peer.certificate);
@@ -274,7 +274,7 @@ json CellRunner::measured_row(const CellInput& cell) {
   enter(cell);
   if (cell.peer) return peer_row(cell);
   const auto result = run(cell);
-  json row = head_of(cell, has_current_geometry(cell));
+  json row = head_of(cell, normals_turn(cell));
   row["regularisation"] = regularisation_json(result);
   row["status"] = name_of(result.status());
   row["message"] = result.message().empty() ? variant_.fault : result.message();

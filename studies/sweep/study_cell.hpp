@@ -73,7 +73,7 @@ class CellRunner {
   nlohmann::json errors(const CaseResult& result) const;
   ReferenceValues reference_of(const CaseResult& result) const;
   nlohmann::json seconds_of(const CaseResult& result) const;
-  bool has_current_geometry(const CellInput& cell) const;
+  bool normals_turn(const CellInput& cell) const;
 
   const Study& study_;
   const std::vector<CellInput>& cells_;

@@ -223,11 +223,11 @@ class Master {
         const double apart = (at.col(a) - mean).norm() - (at.col(b) - mean).norm(), across = at(0, a) - at(0, b);
         return std::abs(apart) > same ? apart > 0 : std::abs(across) > same ? across < 0 : at(1, a) < at(1, b);
       };
-      std::ranges::rotate(nodes, std::ranges::min_element(nodes, comes_first));
+      std::rotate(nodes.begin(), std::ranges::min_element(nodes, comes_first), nodes.end());
     }
     std::ranges::stable_sort(chains, [](auto& a, auto& b) { return a.first > b.first * (1 + at_end); });
-    for (const int node : chains | std::views::values | std::views::join)
-      walls_.try_emplace(node, Wall{static_cast<int>(walls_.size())});
+    for (const auto& [length, nodes] : chains)
+      for (const int node : nodes) walls_.try_emplace(node, Wall{static_cast<int>(walls_.size())});
   }
 
   /// N_i of the vertices of a patch, or their derivatives.

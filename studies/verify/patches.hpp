@@ -116,7 +116,7 @@ class Patchwork {
       if (creases_.insert(back).second) ends[edge[0]].push_back(edge[1]), ends[edge[1]].push_back(edge[0]);
     }
     for (const auto& [here, others] : ends) {
-      const auto along = [&](int k) { return (X.col(others[k]) - X.col(here)).normalized(); };
+      const auto along = [&X, from = here, &to = others](int k) { return (X.col(to[k]) - X.col(from)).normalized(); };
       if (others.size() == 1)
         tips_.insert(here);
       else if (others.size() > 2 || -along(0).dot(along(1)) < least_)

@@ -122,8 +122,9 @@ inline std::optional<double> measure(const State& state, const Json& response) {
     if (kind == "contact_half_width") return half_width(state, touches, how);
   } else if (kind == "plastic_strain") {
     for (std::size_t b = 0; b < state.scene.bodies.size(); ++b)
-      for (const auto& point : state.bodies.points[b] | std::views::join)
-        if (state.scene.bodies[b].name == how.at("on")) samples.push_back({point.equivalent, point.volume});
+      for (const auto& element : state.bodies.points[b])
+        for (const auto& point : element)
+          if (state.scene.bodies[b].name == how.at("on")) samples.push_back({point.equivalent, point.volume});
   } else {
     for (const int node : state.scene.side(how.at("on")).nodes)
       samples.push_back({part_of(how, (force ? state.held : state.u).col(node), state.position(node)), 1});

@@ -170,8 +170,9 @@ inline std::vector<Nodes> boundary_of(const Body& body) {
 inline void check(const Body& body, Eigen::Index nodes) {
   auto lists = body.elements;
   for (const auto& [name, side] : body.sides) lists.push_back(side);
-  for (const int node : lists | std::views::join)
-    if (node < 0 || node >= nodes) throw BadFile(body.name + " has a node that is not there");
+  for (const auto& list : lists)
+    for (const int node : list)
+      if (node < 0 || node >= nodes) throw BadFile(body.name + " has a node that is not there");
   const Reference& kind = reference(body.element);
   for (const auto& element : body.elements)
     if (std::ssize(element) != kind.nodes.cols() || (body.solid() && kind.sides.empty()))
@@ -244,8 +245,9 @@ struct Scene {
       Body body{name, made.at("element"), given, made.at("elements"), made.at("sides")};
       check(body, points.cols());
       if (!body.spring()) body.edges = body.solid() ? boundary_of(body) : body.elements;
-      auto all = body.edges | std::views::join;
-      if (body.solid()) body.sides.try_emplace("boundary", all.begin(), all.end());
+      Nodes boundary;
+      for (const auto& edge : body.edges) boundary.insert(boundary.end(), edge.begin(), edge.end());
+      if (body.solid()) body.sides.try_emplace("boundary", boundary);
       bodies.push_back(std::move(body));
     }
   }

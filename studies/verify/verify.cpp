@@ -338,7 +338,8 @@ class Judge : State {
       const Json& means = part(given, scene.bodies[b].name);
       const auto& points = bodies.points[b];
       double largest = least_strain;
-      for (const auto& point : points | std::views::join) largest = std::max(largest, point.equivalent);
+      for (const auto& element : points)
+        for (const auto& point : element) largest = std::max(largest, point.equivalent);
       for (std::size_t e = 0; e < means.size(); ++e) {
         Vec2 sum(0, 0);
         for (const auto& point : points.at(e)) sum += point.volume * Vec2(point.equivalent, 1);

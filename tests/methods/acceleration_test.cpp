@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-namespace stickslip {
+namespace stickslip::acceleration_test {
 namespace {
 
 /// Symmetric, with these eigenvalues; modes across all entries (a Householder reflection).
@@ -67,4 +67,4 @@ TEST(Contraction, OfASecantThatRepeatsIsNotUndefined) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::acceleration_test

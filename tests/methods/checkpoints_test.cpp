@@ -7,7 +7,7 @@
 #include "tests/support/same_bits.hpp"
 #include "tests/support/sliding_scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::checkpoints_test {
 namespace {
 
 TEST(Checkpoints, LetGoOfHardlyMoreStepsThanThereIsNoRoomFor) {
@@ -120,4 +120,4 @@ TEST(Checkpoints, KeepTheStatesThatAreWritten) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::checkpoints_test

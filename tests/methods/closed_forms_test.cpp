@@ -4,7 +4,7 @@
 
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::closed_forms_test {
 namespace {
 
 using scenes::absolute;
@@ -243,4 +243,4 @@ TEST(DraggedPoint, CirclesAtTheExactDiscreteRadius) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::closed_forms_test

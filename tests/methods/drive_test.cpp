@@ -7,7 +7,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/sliding_scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::drive_test {
 namespace {
 
 struct Driven {
@@ -60,4 +60,4 @@ TEST(Sudden, IsWhatOutrunsBothTheLastIncrementAndWhatDrives) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::drive_test

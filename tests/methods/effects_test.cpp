@@ -5,7 +5,7 @@
 #include "tests/support/allocations.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::effects_test {
 namespace {
 
 /// (Eigen's vectors call malloc themselves; those in a std::vector, and all else of ours, pass through operator new.)
@@ -69,4 +69,4 @@ TEST(Effects, FrictionlessContactHasNoTangentialUnknownsStatesOrHistory) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::effects_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::elements_test {
 namespace {
 
 using scenes::table;
@@ -414,4 +414,4 @@ TEST(SlowPressFit, HasLamesPressureAndDisplacementsButForWhatTheFacetsTake) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::elements_test

@@ -10,7 +10,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::engine_agreement_test {
 namespace {
 
 /// Displacements and tractions of an increment with their derivatives, a column each parameter.
@@ -139,4 +139,4 @@ TYPED_TEST(EngineAgreement, HoldsForABodyThatFlowsAndOneThatOnlyContactHolds) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::engine_agreement_test

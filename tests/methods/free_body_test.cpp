@@ -4,7 +4,7 @@
 
 #include "tests/support/blocks.hpp"
 
-namespace stickslip {
+namespace stickslip::free_body_test {
 namespace {
 
 using scenes::contact;
@@ -120,4 +120,4 @@ TEST(ContactThatClosesWithoutForce, LeavesBodiesWhereTheyAreAndPressesThemLater)
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::free_body_test

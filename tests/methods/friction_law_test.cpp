@@ -7,7 +7,7 @@
 #include "tests/support/every_branch.hpp"
 #include "tests/support/random_contacts.hpp"
 
-namespace stickslip {
+namespace stickslip::friction_law_test {
 namespace {
 
 using scenes::relative;
@@ -160,4 +160,4 @@ TEST(FrictionLaw, OfTrescaKeepsTheTangentSymmetric) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::friction_law_test

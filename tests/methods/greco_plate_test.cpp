@@ -3,7 +3,7 @@
 
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::greco_plate_test {
 namespace {
 
 using scenes::run;
@@ -81,4 +81,4 @@ TEST(GrecoPlate, PenaltyErrorOfResponseAndDerivativeFallsWithSlopeMinusOne) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::greco_plate_test

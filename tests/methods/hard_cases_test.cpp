@@ -5,7 +5,7 @@
 
 #include "tests/support/blocks.hpp"
 
-namespace stickslip {
+namespace stickslip::hard_cases_test {
 namespace {
 
 using scenes::absolute;
@@ -319,4 +319,4 @@ TEST(HardCases, ANodeAtTheEndOfItsMasterKeepsItWhereRoundedCoordinatesEndShort) 
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::hard_cases_test

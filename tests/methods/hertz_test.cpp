@@ -6,7 +6,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::hertz_test {
 namespace {
 
 constexpr double pi = 3.14159265358979323846, radius = 8, E = 200, nu = 0.3;
@@ -136,4 +136,4 @@ TEST(CattaneoMindlin, ForcesRaisedTogetherLeaveNoSlip) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::hertz_test

@@ -9,7 +9,7 @@
 #include "tests/support/same_bits.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::invariance_test {
 namespace {
 
 using scenes::all_methods;
@@ -265,4 +265,4 @@ TEST(UzawaRate, IsTheSpectralRadiusThatTheFinalStatesPredict) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::invariance_test

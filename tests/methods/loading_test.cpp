@@ -4,7 +4,7 @@
 
 #include "tests/support/blocks.hpp"
 
-namespace stickslip {
+namespace stickslip::loading_test {
 namespace {
 
 using scenes::all_methods;
@@ -467,4 +467,4 @@ TEST(Responses, MomentsOfContactAndSupportsBalanceThoseOfTheLoads) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::loading_test

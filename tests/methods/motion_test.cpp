@@ -9,7 +9,7 @@
 #include "tests/support/every_branch.hpp"
 #include "tests/support/random_contacts.hpp"
 
-namespace stickslip {
+namespace stickslip::motion_test {
 namespace {
 
 using scenes::coulomb_error;
@@ -363,4 +363,4 @@ TEST(Penalty, NamesAnOverlapThatGrowsAForceWithTheStiffness) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::motion_test

@@ -8,7 +8,7 @@
 
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::patch_test {
 namespace {
 
 using namespace scenes;
@@ -137,4 +137,4 @@ TEST(ContactPatch, FailsWithNodeToSegmentWhereMeshesDoNotMatchByTheDerivedAmount
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::patch_test

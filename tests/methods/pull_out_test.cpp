@@ -8,7 +8,7 @@
 
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::pull_out_test {
 namespace {
 
 using namespace scenes;
@@ -124,4 +124,4 @@ TEST_P(PullOut, CostsAboutAFactorisationForEachNodeTheFrontPasses) {
 INSTANTIATE_TEST_SUITE_P(A4, PullOut, testing::Values(10, 30, 100));
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::pull_out_test

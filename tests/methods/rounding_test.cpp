@@ -7,7 +7,7 @@
 #include "tests/support/perturbed.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::rounding_test {
 namespace {
 
 using perturbed::Perturbation;
@@ -77,4 +77,4 @@ TEST(RoundingOfThePulledBar, DoesNotChooseTheAnswer) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::rounding_test

@@ -12,7 +12,7 @@
 #include "tests/support/blocks.hpp"
 #include "tests/support/sliding_scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::sequential_test {
 namespace {
 
 using States = std::vector<ContactState>;
@@ -145,4 +145,4 @@ TEST(Sequence, TakesFewerFactorsOfTheBodiesThanItTakesTangents) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::sequential_test

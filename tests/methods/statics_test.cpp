@@ -4,7 +4,7 @@
 
 #include "tests/support/blocks.hpp"
 
-namespace stickslip {
+namespace stickslip::statics_test {
 namespace {
 
 using scenes::absolute;
@@ -289,4 +289,4 @@ TEST(Groove, JamsWhereFrictionExceedsItsSlope) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::statics_test

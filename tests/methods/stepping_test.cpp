@@ -6,7 +6,7 @@
 #include "tests/support/same_bits.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::stepping_test {
 namespace {
 
 using scenes::run;
@@ -96,4 +96,4 @@ TEST(Stepping, BreakpointsOfEveryTableAreHit) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::stepping_test

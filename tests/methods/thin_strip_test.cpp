@@ -5,7 +5,7 @@
 #include "tests/support/blocks.hpp"
 #include "tests/support/largest.hpp"
 
-namespace stickslip {
+namespace stickslip::thin_strip_test {
 namespace {
 
 using scenes::parameter;
@@ -63,4 +63,4 @@ TEST(ThinStrip, TouchesItsOwnWallByEachOfItsFaces) {  // C25
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::thin_strip_test

@@ -6,7 +6,7 @@
 #include "tests/support/same_bits.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::trace_test {
 namespace {
 
 struct Traced {
@@ -71,4 +71,4 @@ TEST(Trace, KeepsNoTractionsOfManyPoints) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::trace_test

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "methods/augmentation/acceleration.hpp"
+#include "methods/augmentation/augmentation_status.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::uzawa_test {
 namespace {
 
 using scenes::run;
@@ -292,5 +292,23 @@ TEST(Status, OfAdaptedScaleConvergesFromAnySmallOne) {
   }
 }
 
+TEST(Adaption, BeginsAnIncrementWithNoLargerScaleThanTheAutomaticOne) {
+  // of the last factors 1, 30, 1e5 at a scale of s: 1 and 30 stay below 100 / s, beyond which none begins
+  const auto at_small_strain = UzawaAL::automatic_multiple.of(false);
+  for (double multiple : {1e-3, 1.0, 1e3}) {
+    const auto method = plain(multiple);
+    const auto s = run(scenes::greco_plate(8), method);
+    const auto initial = initial_regularisation(s.slots, method);
+    std::vector<double> last(initial.size(), 1);
+    last[1] = 30;
+    last[2] = 1e5;
+    const auto first = detail::first_factors(s.slots, initial, last);
+    const double most = std::max(1.0, at_small_strain / multiple);
+    EXPECT_EQ(first[0], 1) << multiple;
+    EXPECT_EQ(first[1], std::min(30.0, most)) << multiple;
+    EXPECT_NEAR(first[2], std::min(1e5, most), 1e-12 * most) << "rounding of the products; " << multiple;
+  }
+}
+
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::uzawa_test

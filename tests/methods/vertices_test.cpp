@@ -5,7 +5,7 @@
 #include "methods/newton/residuals.hpp"
 #include "tests/support/sliding_scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::vertices_test {
 namespace {
 
 TEST(KeptPatches, AreWrongWhereThePointFacesAnother) {
@@ -43,4 +43,4 @@ TEST(KeptPatches, AreWrongWhereThePointFacesAnother) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::vertices_test

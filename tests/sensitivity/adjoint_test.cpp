@@ -8,7 +8,7 @@
 #include "tests/support/solved.hpp"
 #include "tests/support/solved_run.hpp"
 
-namespace stickslip {
+namespace stickslip::adjoint_test {
 namespace {
 
 /// Each response at the end, summed over the steps, and squared against a target that is a parameter itself.
@@ -190,4 +190,4 @@ TEST(Adjoint, OfNoObjectiveIsNothing) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::adjoint_test

@@ -7,7 +7,7 @@
 #include "tests/support/both_modes.hpp"
 #include "tests/support/sliding_scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::checkpoints_test {
 namespace {
 
 // --- the same bits
@@ -170,4 +170,4 @@ TEST(SlowCheckpoints, SpareTheMemoryOfAThousandSteps) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::checkpoints_test

@@ -5,7 +5,7 @@
 #include "tests/support/blocks.hpp"
 #include "tests/support/finite_strain.hpp"
 
-namespace stickslip {
+namespace stickslip::coming_on_test {
 namespace {
 
 using namespace scenes;
@@ -228,4 +228,4 @@ TEST(ComingOn, APointThatSticksAtTheEndHasTheSpringsSlope) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::coming_on_test

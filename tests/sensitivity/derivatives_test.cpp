@@ -8,7 +8,7 @@
 #include "tests/support/solved.hpp"
 #include "tests/support/solved_run.hpp"
 
-namespace stickslip {
+namespace stickslip::derivatives_test {
 namespace {
 
 using EngineKind = LinearAlgebra::Engine;
@@ -188,4 +188,4 @@ TEST(Responses, OfReactionsVisitTheElementsAtTheirSupport) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::derivatives_test

@@ -6,7 +6,7 @@
 #include "tests/support/derivatives.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::dual_stiffness_test {
 namespace {
 
 /// Forces of all bodies by the elements themselves, at motions with and without derivatives.
@@ -87,4 +87,4 @@ TEST(DualStiffness, IsKeptOfLinearBodiesAloneWhereItSavesWork) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::dual_stiffness_test

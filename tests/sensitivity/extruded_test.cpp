@@ -10,7 +10,7 @@
 
 #include "tests/support/finite_strain.hpp"
 
-namespace stickslip {
+namespace stickslip::extruded_test {
 namespace {
 
 using Kind = Response::Kind;
@@ -449,4 +449,4 @@ TEST(SolidBodies, ThatSlideOverSplinesAndTrianglesHaveTheDerivativesOfTheOracle)
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::extruded_test

@@ -9,7 +9,7 @@
 #include "tests/support/compiled_slots.hpp"
 #include "tests/support/finite_strain.hpp"
 
-namespace stickslip {
+namespace stickslip::finite_curves_test {
 namespace {
 
 using namespace scenes;
@@ -461,4 +461,4 @@ TEST(FiniteCurves, SmallStrainIsTheirLimit) {  // D3
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::finite_curves_test

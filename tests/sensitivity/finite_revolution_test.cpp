@@ -7,7 +7,7 @@
 #include "tests/support/blocks.hpp"
 #include "tests/support/finite_strain.hpp"
 
-namespace stickslip {
+namespace stickslip::finite_revolution_test {
 namespace {
 
 using namespace scenes;
@@ -90,4 +90,4 @@ TEST(FiniteRevolution, DerivativesEqualTheComplexStepOfTheWholeRun) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::finite_revolution_test

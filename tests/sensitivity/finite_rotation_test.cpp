@@ -7,7 +7,7 @@
 #include "tests/support/blocks.hpp"
 #include "tests/support/finite_strain.hpp"
 
-namespace stickslip {
+namespace stickslip::finite_rotation_test {
 namespace {
 
 using namespace scenes;
@@ -212,4 +212,4 @@ TEST(FiniteRotation, OfSmallAnglesIsThatOfSmallStrain) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::finite_rotation_test

@@ -9,7 +9,7 @@
 #include "tests/support/finite_strain.hpp"
 #include "tests/support/tangents.hpp"
 
-namespace stickslip {
+namespace stickslip::finite_segments_test {
 namespace {
 
 using namespace scenes;
@@ -361,4 +361,4 @@ TEST(FiniteSegments, ObstaclesMoveAndTurnWithTheirFriction) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::finite_segments_test

@@ -9,7 +9,7 @@
 #include "tests/support/blocks.hpp"
 #include "tests/support/both_modes.hpp"
 
-namespace stickslip {
+namespace stickslip::finite_strain_test {
 namespace {
 
 using namespace scenes;
@@ -358,4 +358,4 @@ TEST(FiniteStrain, IsSmallStrainWhereMotionsAreSmall) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::finite_strain_test

@@ -4,7 +4,7 @@
 #include "tests/support/both_modes.hpp"
 #include "tests/support/sides.hpp"
 
-namespace stickslip {
+namespace stickslip::flow_ties_test {
 namespace {
 
 using namespace scenes;
@@ -267,4 +267,4 @@ INSTANTIATE_TEST_SUITE_P(SlowSettings, FlowTiesOfBlocks,
                                          FlowSetting{Space::axisymmetric, true, "T3"}));
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::flow_ties_test

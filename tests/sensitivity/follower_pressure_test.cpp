@@ -7,7 +7,7 @@
 #include "tests/support/compiled_slots.hpp"
 #include "tests/support/finite_strain.hpp"
 
-namespace stickslip {
+namespace stickslip::follower_pressure_test {
 namespace {
 
 using namespace scenes;
@@ -144,4 +144,4 @@ TEST(FollowerPressure, HasTheTangentOfItsForcesWhereTheThicknessChanges) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::follower_pressure_test

@@ -10,7 +10,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/oracle.hpp"
 
-namespace stickslip {
+namespace stickslip::friction_law_test {
 namespace {
 
 using Law = FrictionLaw<Number>;
@@ -118,4 +118,4 @@ TEST(FrictionLawDerivatives, EqualTheAdjoint) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::friction_law_test

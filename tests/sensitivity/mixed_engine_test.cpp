@@ -6,7 +6,7 @@
 #include "tests/support/finite_strain.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::mixed_engine_test {
 namespace {
 
 using Sensitivity = UzawaAL::Sensitivity;
@@ -40,4 +40,4 @@ TEST(MixedEngine, HasTheDerivativesOfTheWholeRun) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::mixed_engine_test

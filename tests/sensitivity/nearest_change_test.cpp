@@ -8,7 +8,7 @@
 #include "tests/support/both_modes.hpp"
 #include "tests/support/random_ties.hpp"
 
-namespace stickslip {
+namespace stickslip::nearest_change_test {
 namespace {
 
 namespace ties = random_ties;
@@ -260,4 +260,4 @@ TEST(BothModes, HaveTheSameSidesOfABarWhoseFrontOfSlipStops) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::nearest_change_test

@@ -4,7 +4,7 @@
 #include "sensitivity/adjoint.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::objectives_test {
 namespace {
 
 /// A point whose displacements along x and y are the responses; three steps, the second of them in two parts.
@@ -77,4 +77,4 @@ TEST(Objectives, OfARunThatEndedEarlyHaveNoGradient) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::objectives_test

@@ -7,7 +7,7 @@
 #include "tests/support/solved.hpp"
 #include "tests/support/solved_run.hpp"
 
-namespace stickslip {
+namespace stickslip::one_sided_test {
 namespace {
 
 using namespace scenes;
@@ -263,4 +263,4 @@ TEST(OneSided, AreNotComputedWhereNoPointIsWeak) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::one_sided_test

@@ -10,7 +10,7 @@
 #include "tests/support/solved.hpp"
 #include "tests/support/solved_run.hpp"
 
-namespace stickslip {
+namespace stickslip::oracle_test {
 namespace {
 
 using scenes::run;
@@ -292,4 +292,4 @@ TEST(GradientCheck, ChecksBothSidesOfATie) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::oracle_test

@@ -4,7 +4,7 @@
 #include "tests/support/oracle.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::path_test {
 namespace {
 
 using namespace scenes;
@@ -285,4 +285,4 @@ TEST(Path, IsTheSameInOtherUnits) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::path_test

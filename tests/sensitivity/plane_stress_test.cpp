@@ -7,7 +7,7 @@
 #include "tests/support/blocks.hpp"
 #include "tests/support/finite_strain.hpp"
 
-namespace stickslip {
+namespace stickslip::plane_stress_test {
 namespace {
 
 using namespace scenes;
@@ -366,4 +366,4 @@ TEST(PlaneStress, WithoutAThicknessNamesTheElement) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::plane_stress_test

@@ -7,7 +7,7 @@
 #include "tests/support/blocks.hpp"
 #include "tests/support/finite_strain.hpp"
 
-namespace stickslip {
+namespace stickslip::plasticity_test {
 namespace {
 
 using namespace scenes;
@@ -281,4 +281,4 @@ TEST(Plasticity, OfAMaterialThatNeverFlowsIsElasticity) {  // D2
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::plasticity_test

@@ -8,7 +8,7 @@
 #include "tests/support/finite_strain.hpp"
 #include "tests/support/tangents.hpp"
 
-namespace stickslip {
+namespace stickslip::polyline_segments_test {
 namespace {
 
 using namespace scenes;
@@ -159,4 +159,4 @@ TEST(PolylineSegments, DerivativesEqualTheComplexStepAndTheAdjoint) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::polyline_segments_test

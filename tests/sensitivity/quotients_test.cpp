@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace stickslip {
+namespace stickslip::quotients_test {
 namespace {
 
 constexpr double steps[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
@@ -75,4 +75,4 @@ TEST(Quotients, OfWhatDoesNotChangeAreExact) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::quotients_test

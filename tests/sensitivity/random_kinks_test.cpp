@@ -5,7 +5,7 @@
 #include "tests/support/random_ties.hpp"
 #include "tests/support/solved_run.hpp"
 
-namespace stickslip {
+namespace stickslip::random_kinks_test {
 namespace {
 
 using namespace random_ties;
@@ -88,4 +88,4 @@ TEST(SlowRandomKinks, AreAllFlaggedAndRightOnBothSides) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::random_kinks_test

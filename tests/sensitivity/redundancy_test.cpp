@@ -12,7 +12,7 @@
 #include "tests/support/solved.hpp"
 #include "tests/support/solved_run.hpp"
 
-namespace stickslip {
+namespace stickslip::redundancy_test {
 namespace {
 
 bool repeat(const Scene& scene, ContactState state) {
@@ -46,4 +46,4 @@ TEST(CriticalFriction, LeavesNoDerivativeOfAnySize) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::redundancy_test

@@ -8,7 +8,7 @@
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::reused_factor_test {
 namespace {
 
 using namespace scenes;
@@ -88,4 +88,4 @@ TEST(ReusedFactor, OfAnotherTangentIsFoundOutByThePenaltyMethod) { expect_found_
 TEST(ReusedFactor, OfAnotherTangentIsFoundOutByTheMonolithicMethod) { expect_found_out(MonolithicAL{}); }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::reused_factor_test

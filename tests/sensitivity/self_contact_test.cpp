@@ -8,7 +8,7 @@
 #include "tests/support/blocks.hpp"
 #include "tests/support/finite_strain.hpp"
 
-namespace stickslip {
+namespace stickslip::self_contact_test {
 namespace {
 
 using namespace scenes;
@@ -182,4 +182,4 @@ TEST(SelfContact, HasTheDerivativesOfTheWholeRun) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::self_contact_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::tangents_test {
 namespace {
 
 using scenes::table;
@@ -91,4 +91,4 @@ TEST(Tangents, BetweenBodiesAreTheComplexStep) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::tangents_test

@@ -2,7 +2,7 @@
 /// path that is moved to that side.
 #include "tests/support/sides.hpp"
 
-namespace stickslip {
+namespace stickslip::ties_test {
 namespace {
 
 using namespace scenes;
@@ -19,4 +19,4 @@ TEST(Ties, OfABarWhoseFrontOfSlipStopsOnANode) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::ties_test

@@ -5,7 +5,7 @@
 
 #include "tests/support/solved.hpp"
 
-namespace stickslip {
+namespace stickslip::vertex_margin_test {
 namespace {
 
 /// A point at x on a roof of two slopes of 0.1, pressed down, whose friction holds it there.
@@ -44,4 +44,4 @@ TEST(VertexMargin, IsOfPointsThatTouchFacetsAlone) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::vertex_margin_test

@@ -5,7 +5,7 @@
 #include "tests/support/extruded.hpp"
 #include "tests/support/sides.hpp"
 
-namespace stickslip {
+namespace stickslip::vertex_ties_test {
 namespace {
 
 using namespace scenes;
@@ -108,4 +108,4 @@ TEST(VertexTies, AtACornerThatIsPressedHaveTheSideOnWhichThePointStays) {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::vertex_ties_test

@@ -114,7 +114,8 @@ Seam seam(const std::vector<FacePatch>& patches, const Field& x) {
 TEST(VerifySurface, HasWeightsOfSumOneAtEachValence) {
   const Mesh mesh = ball(4, 1);
   std::map<int, int> valence;
-  for (const int node : mesh.faces | std::views::join) ++valence[node];
+  for (const auto& face : mesh.faces)
+    for (const int node : face) ++valence[node];
   std::set<int> valences;
   for (const auto& [node, count] : valence) valences.insert(count);
   EXPECT_THAT(valences, testing::IsSupersetOf({3, 4, 5, 6}));
