@@ -10,7 +10,7 @@ namespace {
 
 /// Share of a patch by which a foot may lie past a border, as past the end of a curve. Why: at a border the normal is
 /// that of one side, so a node in a plane of symmetry, where a body is cut, projects a little past it.
-constexpr double past_border = 0.01;
+constexpr double past_edge = 0.01;
 
 Vec<double, 2> place_of(const Facing& facing) { return {facing.xi, facing.eta}; }
 
@@ -176,7 +176,7 @@ bool SurfaceSearch::is_past_end(const Facing& at, const Query& query) const {
   const SurfacePatch& patch = patches_[at.patch];
   for (int k = 0; k < patch.corners; ++k) {
     const bool ends = !patch.goes_on[k] && (patch.across[k] == Patch::none || !is_eligible(patch.across[k], query));
-    if (ends && beyond_edge(patch.corners, k, place_of(at)) > past_border) return true;
+    if (ends && beyond_edge(patch.corners, k, place_of(at)) > past_edge) return true;
   }
   return false;
 }

@@ -462,7 +462,8 @@ Model make_model(const Scene& scene, Seconds& spent) {
   const auto is_on_plane = [&](const ContactPoint& point) {
     return point.obstacle >= 0 && is_flat(scene.obstacles[point.obstacle].shape);
   };
-  model.effects.normals_turn = model.effects.current_geometry && !std::ranges::all_of(model.points, is_on_plane);
+  model.effects.normals_turn =
+      model.effects.current_geometry && !std::all_of(model.points.begin(), model.points.end(), is_on_plane);
   if (model.effects.current_geometry) place_feet(model);
   return model;
 }

@@ -104,7 +104,8 @@ std::vector<Warning> overlaps_at_start(const Problem& problem) {
   for (const auto& gaps : start_gaps(problem)) {
     if (gaps.unasked == 0) continue;
     const auto& contacts = problem.model.scene.contacts;
-    const auto contact = std::ranges::find(contacts, gaps.name, &Contact::name);
+    const auto contact =
+        std::find_if(contacts.begin(), contacts.end(), [&](const Contact& one) { return one.name == gaps.name; });
     const bool rigid = obstacle_of(problem.model, static_cast<int>(contact - contacts.begin())) != nullptr;
     warnings.push_back(
         {WarningCode::starts_overlapping, gaps.name, gaps.overlap,

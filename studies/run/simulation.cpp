@@ -56,7 +56,7 @@ std::vector<int> order_of(const std::vector<Parameter>& parameters, const JsonDo
   }
   std::vector<int> order(parameters.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order, {}, [&](int j) { return ranks[j]; });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return ranks[a] < ranks[b]; });
   return order;
 }
 
