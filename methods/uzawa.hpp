@@ -124,7 +124,7 @@ class AugmentationLoop {
     inexact_ &= !status_.done;
     const bool raised = method_.adapt && progress_.has_same_states() && !status_.done &&
                         adapt(run_.slots, initial_, progress_.last_violations(), progress_.violations(),
-                              status_.negligible, !start_.moves(), increment_.rho_factor);
+                              status_.negligible, !start_.is_of_motion(), increment_.rho_factor);
     if (raised) {  // another rho is another map
       accelerator_ = Accelerator<T>(method_.acceleration);
       progress_.change_map();

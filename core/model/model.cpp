@@ -336,6 +336,35 @@ void place_feet(Model& model) {
   }
 }
 
+/// Whether nothing of a model depends on where it is, though strains are finite: points on springs against planes that
+/// do not turn.
+bool moves_linearly(const Model& model) {
+  const auto is_spring = [](const Body& body) { return std::holds_alternative<GroundedSpring>(body.material); };
+  const auto keeps_geometry = [&](const ContactPoint& point) {
+    if (point.obstacle < 0) return false;
+    const auto& obstacle = model.scene.obstacles[point.obstacle];
+    return is_flat(obstacle.shape) && !obstacle.rotate;
+  };
+  return std::all_of(model.scene.bodies.begin(), model.scene.bodies.end(), is_spring) &&
+         std::all_of(model.points.begin(), model.points.end(), keeps_geometry);
+}
+
+/// The effects that the scene as a whole decides; those of single contacts are there already.
+void set_effects(Model& model) {
+  const Scene& scene = model.scene;
+  const bool is_linear = moves_linearly(model);
+  const auto is_on_plane = [&](const ContactPoint& point) {
+    return point.obstacle >= 0 && is_flat(scene.obstacles[point.obstacle].shape);
+  };
+  Effects& effects = model.effects;
+  effects.sensitivity = !scene.parameters.empty();
+  effects.plasticity = model.memory_count > 0;
+  effects.linear_bulk = is_linear || has_constant_stiffness(scene);
+  effects.current_geometry = scene.finite_strain && !is_linear && !model.points.empty();
+  effects.normals_turn =
+      effects.current_geometry && !std::all_of(model.points.begin(), model.points.end(), is_on_plane);
+}
+
 }  // namespace
 
 SideSet Model::side(const std::string& text) const {
@@ -379,19 +408,6 @@ std::string radius_fault(Space space, const Points<double>& points, const BodyMe
   if (radii.minCoeff() >= -1e-12 * points.cwiseAbs().maxCoeff()) return "";
   return "reaches to x = " + std::to_string(radii.minCoeff()) +
          "; in an axisymmetric space x is the radius, and must not be negative";
-}
-
-/// Whether nothing of a model depends on where it is, though strains are finite: points on springs against planes that
-/// do not turn.
-bool moves_linearly(const Model& model) {
-  const auto is_spring = [](const Body& body) { return std::holds_alternative<GroundedSpring>(body.material); };
-  const auto keeps_geometry = [&](const ContactPoint& point) {
-    if (point.obstacle < 0) return false;
-    const auto& obstacle = model.scene.obstacles[point.obstacle];
-    return is_flat(obstacle.shape) && !obstacle.rotate;
-  };
-  return std::all_of(model.scene.bodies.begin(), model.scene.bodies.end(), is_spring) &&
-         std::all_of(model.points.begin(), model.points.end(), keeps_geometry);
 }
 
 int Model::contact_index(const std::string& name) const {
@@ -454,16 +470,7 @@ Model make_model(const Scene& scene, Seconds& spent) {
   for (int l = 0; scene.finite_strain && l < static_cast<int>(scene.loads.size()); ++l)
     if (scene.loads[l].kind == Load::Kind::pressure) model.followers.push_back(follower(model, l));
   model.times = step_ends(scene);
-  model.effects.sensitivity = !scene.parameters.empty();
-  model.effects.plasticity = model.memory_count > 0;
-  const bool is_linear = moves_linearly(model);
-  model.effects.linear_bulk = is_linear || has_constant_stiffness(scene);
-  model.effects.current_geometry = scene.finite_strain && !is_linear && !model.points.empty();
-  const auto is_on_plane = [&](const ContactPoint& point) {
-    return point.obstacle >= 0 && is_flat(scene.obstacles[point.obstacle].shape);
-  };
-  model.effects.normals_turn =
-      model.effects.current_geometry && !std::all_of(model.points.begin(), model.points.end(), is_on_plane);
+  set_effects(model);
   if (model.effects.current_geometry) place_feet(model);
   return model;
 }

@@ -43,9 +43,7 @@ struct Start {
   const Arc* arc = nullptr;  ///< of a step along a path, whose time is a guess then
   bool at_rest = false;      ///< whether the overdamped motion ended in the state
   bool is_step() const { return anchor.stiffness.size() > 0 && !at_rest; }
-  bool moves() const {
-    return anchor.stiffness.size() > 0 || at_rest;
-  }  ///< whether it is a step of the motion or its rest
+  bool is_of_motion() const { return is_step() || at_rest; }
   /// States that points resume which start on their cone: those of the last increment, where it starts there.
   std::span<const ContactState> resumed(const State<T>& previous) const {
     if (&state != &previous) return {};
