@@ -22,6 +22,8 @@ class DenseFactor {
   Matrix<T> solve(const Matrix<T>& B, bool transposed = false) const;
   /// Sign of the determinant, +1 or -1 (complex: by the real parts of the pivots).
   int determinant_sign() const;
+  /// Whether the last factor is LL^T.
+  bool is_cholesky() const { return cholesky_; }
   /// Estimate of the condition number in the 1-norm, of the matrix as it was given; 0 where there is no factor.
   double condition_estimate() const;
   const std::string& message() const { return message_; }

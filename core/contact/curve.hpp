@@ -72,9 +72,13 @@ struct OwnVertex {
     for (const int turn : {-count, 0, count}) is_near_last |= std::abs(p - last - turn) <= neighbourhood;
     return (last != Patch::none && is_near_last ? 1 : share_of_depth) * max_depth;
   }
-  bool may_face(const std::vector<Patch>& patches, int p) const {
+  /// Whether the vertex may touch patch p, as slave or as a place of the master.
+  bool may_touch(const std::vector<Patch>& patches, int p) const {
     const auto& vertices = patches[p].vertices;
-    return vertices[1] > vertex && !wall[p] && std::find(vertices.begin(), vertices.end(), vertex) == vertices.end();
+    return !wall[p] && std::find(vertices.begin(), vertices.end(), vertex) == vertices.end();
+  }
+  bool may_face(const std::vector<Patch>& patches, int p) const {
+    return patches[p].vertices[1] > vertex && may_touch(patches, p);
   }
   bool may_face_some(const std::vector<Patch>& patches) const {
     for (int p = 0; p < static_cast<int>(patches.size()); ++p)

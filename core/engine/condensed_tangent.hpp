@@ -50,7 +50,14 @@ class CondensedTangent : public TangentSystem<T> {
 
   bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold, Counters& counters) override;
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how) override;
-  bool reversed() const override { return dense_.reversed(); }  // (K_ii is positive definite)
+  bool reversed() const override {  // (K_ii is positive definite)
+    return dense_.reversed() != (untouched_.determinant_sign() < 0);
+  }
+  std::optional<int> motions_unresisted(const std::vector<PointTangent<T>>& springs, Counters& counters) override {
+    if (!condensed_ || !eliminated_ || !untouched_.has(touched_by(springs, {}))) return std::nullopt;
+    const auto touched = dense_.motions_unresisted(springs, counters);
+    return touched ? std::optional(*touched + untouched_.negative_eigenvalues(schur_)) : std::nullopt;
+  }
   /// The larger one of the bodies' and the dense system's.
   double condition_estimate() override {
     return std::max(factor_.solver.condition_estimate(), dense_.condition_estimate());

@@ -7,6 +7,8 @@
 /// the contact dofs (Layout::compact), l over the multipliers.
 #pragma once
 
+#include <Eigen/Eigenvalues>
+
 #include "core/algebra/dense_factor.hpp"
 #include "core/engine/point_system.hpp"
 
@@ -35,6 +37,7 @@ class DenseSystem : public PointSystem<T> {
     return largest;
   }
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how) override;
+  std::optional<int> motions_unresisted(const std::vector<PointTangent<T>>& springs, Counters& counters) override;
   double condition_estimate() override { return made_.valid ? factor_.condition_estimate() : 0; }
   EngineMemory<T> memory() const override { return {.factor = made_}; }
   void restore(const EngineMemory<T>& memory, Counters& counters) override {
@@ -60,6 +63,8 @@ class DenseSystem : public PointSystem<T> {
 
   bool make_factor(Counters& counters) override;
   void take_multipliers();
+  void put_bodies(Matrix<T>& K) const;
+  void add_points(const std::vector<PointTangent<T>>& tangents, bool with_multipliers, Matrix<T>& K) const;
   Matrix<T> solve_factor(const Matrix<T>& b, bool transposed) override { return factor_.solve(b, transposed); }
   Matrix<T> multiply(const Matrix<T>& x, bool transposed) const override {
     return transposed ? Matrix<T>(matrix_.transpose() * x) : Matrix<T>(matrix_ * x);
@@ -114,20 +119,47 @@ void DenseSystem<T>::take_multipliers() {
 }
 
 template <class T>
-bool DenseSystem<T>::make_factor(Counters& counters) {
-  take_multipliers();
+void DenseSystem<T>::put_bodies(Matrix<T>& K) const {
   const auto free = static_cast<Eigen::Index>(displacements_.size());
-  Matrix<T>& K = matrix_;
-  K = Matrix<T>::Zero(this->size(), this->size());
   for (Eigen::Index j = 0; j < free; ++j)
     for (Eigen::Index i = 0; i < free; ++i) K(i, j) = stiffness_(displacements_[i], displacements_[j]);
-  this->for_each_hold([&](int row, const T& x) { K(row, row) += x; });
-  for (std::size_t p = 0; p < made_.tangents.size(); ++p) {
-    const auto rows = this->rows_of(p, this->places_of(p, made_.tangents[p]));
-    this->for_each_entry_of(p, made_.tangents[p], [&](int row, int column, const T& x) {
+}
+
+template <class T>
+void DenseSystem<T>::add_points(const std::vector<PointTangent<T>>& tangents, bool with_multipliers,
+                                Matrix<T>& K) const {
+  for (std::size_t p = 0; p < tangents.size(); ++p) {
+    const auto rows = this->rows_of(p, this->places_of(p, tangents[p]));
+    this->for_each_entry_of(p, tangents[p], with_multipliers, [&](int row, int column, const T& x) {
       if (rows[row] >= 0 && rows[column] >= 0) K(rows[row], rows[column]) += x;
     });
   }
+}
+
+template <class T>
+std::optional<int> DenseSystem<T>::motions_unresisted(const std::vector<PointTangent<T>>& springs,
+                                                      Counters& /*counters: those of dense factors count nothing*/) {
+  if constexpr (std::is_same_v<T, double>) {
+    const auto free = static_cast<Eigen::Index>(displacements_.size());
+    Matrix<double> K(free, free);
+    put_bodies(K);
+    add_points(springs, false, K);
+    K.diagonal() *= PointSystem<T>::raised;
+    if (K.llt().info() == Eigen::Success) return 0;
+    const auto values = Eigen::SelfAdjointEigenSolver<Matrix<double>>(K, Eigen::EigenvaluesOnly).eigenvalues();
+    return static_cast<int>((values.array() < 0).count());
+  }
+  return std::nullopt;
+}
+
+template <class T>
+bool DenseSystem<T>::make_factor(Counters& counters) {
+  take_multipliers();
+  Matrix<T>& K = matrix_;
+  K = Matrix<T>::Zero(this->size(), this->size());
+  put_bodies(K);
+  this->for_each_hold([&](int row, const T& x) { K(row, row) += x; });
+  add_points(made_.tangents, kind_.unknown_multipliers, K);
   return factor_.factorise(K, kind_.symmetry == Symmetry::positive_definite, counters.factorizations);
 }
 

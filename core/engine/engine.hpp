@@ -106,6 +106,11 @@ class Engine {
   /// Whether the determinant of the tangent has another sign than where all points stick. A problem with such a tangent
   /// has several solutions, or none, under some load.
   bool reversed() const { return system().reversed(); }
+  /// Number of motions that nothing resists: of negative eigenvalues of the bodies' last tangent with that of the
+  /// points' `springs`, a symmetric matrix. Nothing where it is not known.
+  std::optional<int> motions_unresisted(const std::vector<PointTangent<T>>& springs, Counters& counters) {
+    return system().motions_unresisted(springs, counters);
+  }
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how = Solving::refined) { return system().solve(rows, how); }
   /// Solves by the factor that one refined right-hand side takes.
   int solves() const { return system().solves(); }

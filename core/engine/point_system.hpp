@@ -126,9 +126,11 @@ class PointSystem : public TangentSystem<T> {
         if (const int row = row_of_contact_[n * model_.dimension + i]; row >= 0) add(row, T(made_.hold[n]));
   }
   template <class Add>
-  void for_each_entry_of(std::size_t p, const PointTangent<T>& tangent, Add&& add) const {
-    detail::for_each_framed_entry(model_, slots_, static_cast<int>(p), tangent, kind_.unknown_multipliers, add);
+  void for_each_entry_of(std::size_t p, const PointTangent<T>& tangent, bool with_multipliers, Add&& add) const {
+    detail::for_each_framed_entry(model_, slots_, static_cast<int>(p), tangent, with_multipliers, add);
   }
+  /// What diagonal entries are multiplied by, so that a tangent which is positive definite but for its rounding is so.
+  static constexpr double raised = 1 + 1e-10;
   void restore_factor(const FactorRecipe<T>& recipe, Counters& counters) {
     made_.valid = false;
     if (recipe.valid) factorise(recipe.tangents, recipe.hold, counters);
@@ -169,8 +171,8 @@ bool PointSystem<T>::update(const std::vector<PointTangent<T>>& tangents, const 
       const auto add = [&](double sign) {
         return [&change, sign](int r, int c, double x) { change.block(r, c) += sign * x; };
       };
-      for_each_entry_of(p, tangents[p], add(1));
-      for_each_entry_of(p, made_.tangents[p], add(-1));
+      for_each_entry_of(p, tangents[p], kind_.unknown_multipliers, add(1));
+      for_each_entry_of(p, made_.tangents[p], kind_.unknown_multipliers, add(-1));
       changes.push_back(std::move(change));
     }
     return made_.update.take(std::move(changes), size(), counters,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/algebra/inertia.hpp"
 #include "core/engine/full_bodies.hpp"
 #include "core/engine/point_system.hpp"
 
@@ -21,6 +22,7 @@ class SparseSystem : public PointSystem<T> {
   void take_bodies() override { matrix_.values = bodies_.tangent(matrix_); }
   Matrix<T> times(const Matrix<T>& u, bool transposed) const override { return matrix_.times(u, transposed); }
   double stiffness() const override { return matrix_.largest_diagonal(); }
+  std::optional<int> motions_unresisted(const std::vector<PointTangent<T>>& springs, Counters& counters) override;
   double condition_estimate() override { return solver_.condition_estimate(); }
   EngineMemory<T> memory() const override { return {places_, model_.effects.linear_bulk ? made_ : FactorRecipe<T>{}}; }
   void restore(const EngineMemory<T>& memory, Counters& counters) override {
@@ -47,12 +49,14 @@ class SparseSystem : public PointSystem<T> {
   const std::vector<int>& places_with_room(std::size_t p) const {
     return places_.empty() ? model_.points[p].places : places_[p];
   }
-  bool has_room() const;
+  bool has_room(const std::vector<PointTangent<T>>& tangents) const;
   /// Places of a point whose tangent it is, with those of the patches around.
   std::vector<int> places_around(std::size_t p, const PointTangent<T>& tangent) const;
   /// Entry of each (row, column) pair of these rows; -1: of a row that is not there.
   std::vector<int> entries_of(const std::vector<int>& rows) const;
-  void add_points();
+  T& diagonal(std::vector<T>& values, int row) const { return values[locate(*matrix_.pattern, row, row)]; }
+  /// Adds points to the values of a matrix of this pattern.
+  void add_points(const std::vector<PointTangent<T>>& tangents, bool with_multipliers, std::vector<T>& values) const;
 
   bool make_factor(Counters& counters) override;
   Matrix<T> solve_factor(const Matrix<T>& b, bool transposed) override { return solver_.solve(b, transposed); }
@@ -66,6 +70,7 @@ class SparseSystem : public PointSystem<T> {
   std::vector<T> values_;                    ///< that are factorised
   LinearSolver<T> solver_;
   bool analysed_ = false;
+  std::optional<Inertia> inertia_ = std::nullopt;  ///< of motions_unresisted(), analysed for this pattern
 };
 
 template <class T>
@@ -100,6 +105,7 @@ void SparseSystem<T>::lay_out(Places places) {
   for (std::size_t p = 0; p < model_.points.size() && !slides; ++p)
     point_map_.push_back(entries_of(this->rows_of(p, model_.points[p].places)));
   analysed_ = false;
+  inertia_.reset();
 }
 
 template <class T>
@@ -135,41 +141,64 @@ std::vector<int> SparseSystem<T>::places_around(std::size_t p, const PointTangen
   return places;
 }
 
-/// Whether the pattern has room for the tangents of made_.
+/// Whether the pattern has room for these tangents.
 template <class T>
-bool SparseSystem<T>::has_room() const {
-  for (std::size_t p = 0; p < made_.tangents.size(); ++p) {
+bool SparseSystem<T>::has_room(const std::vector<PointTangent<T>>& tangents) const {
+  for (std::size_t p = 0; p < tangents.size(); ++p) {
     const auto& room = places_with_room(p);
-    for (int place : made_.tangents[p].places)
+    for (int place : tangents[p].places)
       if (!std::binary_search(room.begin(), room.end(), place)) return false;
   }
   return true;
 }
 
 template <class T>
-void SparseSystem<T>::add_points() {
-  for (std::size_t p = 0; p < made_.tangents.size(); ++p) {
+void SparseSystem<T>::add_points(const std::vector<PointTangent<T>>& tangents, bool with_multipliers,
+                                 std::vector<T>& values) const {
+  for (std::size_t p = 0; p < tangents.size(); ++p) {
     const auto own =
-        point_map_.empty() ? entries_of(this->rows_of(p, this->places_of(p, made_.tangents[p]))) : std::vector<int>();
+        point_map_.empty() ? entries_of(this->rows_of(p, this->places_of(p, tangents[p]))) : std::vector<int>();
     const auto& map = point_map_.empty() ? own : point_map_[p];
     const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(map.size()))));
-    this->for_each_entry_of(p, made_.tangents[p], [&](int row, int column, const T& x) {
-      if (const int entry = map[row * n + column]; entry >= 0) values_[entry] += x;
+    this->for_each_entry_of(p, tangents[p], with_multipliers, [&](int row, int column, const T& x) {
+      if (const int entry = map[row * n + column]; entry >= 0) values[entry] += x;
     });
   }
 }
 
+/// By a factorisation on the same pattern, in which each multiplier has a row of its own. Left out where it is dear.
+template <class T>
+std::optional<int> SparseSystem<T>::motions_unresisted(const std::vector<PointTangent<T>>& springs,
+                                                       Counters& counters) {
+  constexpr double dear = 1e9;  // additions and multiplications
+  if constexpr (std::is_same_v<T, double>) {
+    if (!has_room(springs)) return std::nullopt;
+    if (!inertia_) {
+      inertia_.emplace(matrix_.pattern);
+      ++counters.analyses;
+    }
+    if (inertia_->size().flops > dear) return std::nullopt;
+    std::vector<double> values = matrix_.values;
+    add_points(springs, false, values);
+    const int displacements = static_cast<int>(displacements_.size());
+    for (int row = 0; row < displacements; ++row) diagonal(values, row) *= PointSystem<T>::raised;
+    for (int row = displacements; row < this->size(); ++row) diagonal(values, row) = 1;
+    return inertia_->negative_eigenvalues(values, counters.factorizations);
+  }
+  return std::nullopt;
+}
+
 template <class T>
 bool SparseSystem<T>::make_factor(Counters& counters) {
-  if (model_.slides_along_curves() && !has_room()) {
+  if (model_.slides_along_curves() && !has_room(made_.tangents)) {
     Places places;
     for (std::size_t p = 0; p < made_.tangents.size(); ++p)
       places.push_back(made_.tangents[p].places.empty() ? places_with_room(p) : places_around(p, made_.tangents[p]));
     lay_out(std::move(places));
   }
   values_ = matrix_.values;
-  this->for_each_hold([&](int row, const T& x) { values_[locate(*matrix_.pattern, row, row)] += x; });
-  add_points();
+  this->for_each_hold([&](int row, const T& x) { diagonal(values_, row) += x; });
+  add_points(made_.tangents, kind_.unknown_multipliers, values_);
   if (!std::exchange(analysed_, true)) {
     solver_.analyse(matrix_.pattern, kind_.symmetry);
     ++counters.analyses;

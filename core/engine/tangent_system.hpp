@@ -5,6 +5,7 @@
 ///   condensed   what is inside the bodies eliminated first, in each tangent (engine/condensed_tangent.hpp)
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -112,6 +113,11 @@ class TangentSystem {
   virtual BlockVector<T> solve(const BlockVector<T>& rows, Solving how) = 0;
   virtual int solves() const { return 1; }
   virtual bool reversed() const = 0;
+  /// As that of Engine.
+  virtual std::optional<int> motions_unresisted(const std::vector<PointTangent<T>>& /*springs*/,
+                                                Counters& /*counters*/) {
+    return std::nullopt;
+  }
   virtual double condition_estimate() = 0;
   virtual EngineMemory<T> memory() const = 0;
   virtual void restore(const EngineMemory<T>& memory, Counters& counters) = 0;

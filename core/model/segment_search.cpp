@@ -55,6 +55,29 @@ class OwnDepths {
   std::map<int, std::vector<int>> last_;  ///< per first node of a slave facet: the patches that its points faced
 };
 
+/// The nearest facet that a node of a side in contact with itself may touch: its normal is against that of the node,
+/// which is outside of it or beside it.
+FacetSearch::Nearest nearest_of_itself(const FacetSearch& search, const MasterCurve& master,
+                                       const Points<double>& positions, const ContactPoint& point) {
+  constexpr double beside = 0.5;  // facet lengths past an end, as CurveSearch has it
+  const auto right_of = [](const Vec<double, 2>& along) { return Vec<double, 2>(along[1], -along[0]); };
+  const auto along = [&](int from, int to) -> Vec<double, 2> {
+    return (positions.col(to) - positions.col(from)).head<2>();
+  };
+  Vec<double, 2> outward = Vec<double, 2>::Zero();
+  for (const Segment& facet : point.segments) outward += right_of(along(facet.slave[0], facet.slave[1]));
+  const int node = point.nodes[0];
+  const OwnVertex& own = master.own.at(node);
+  return search.nearest(positions.col(node).head<2>(), [&](int facet) {
+    const int first = master.facets[facet][0];
+    const Vec<double, 2> tau = along(first, master.facets[facet][1]), normal = right_of(tau), off = along(first, node);
+    const double xi = off.dot(tau) / tau.squaredNorm();
+    return own.may_touch(master.patches, facet) &&
+           normal.dot(outward) <= -least_against * normal.norm() * outward.norm() &&
+           (normal.dot(off) >= 0 || (xi >= -beside && xi <= 1 + beside));
+  });
+}
+
 }  // namespace
 
 void find_segments(const Model& model, int curve, const Points<double>& start, const Points<double>& moved,
@@ -88,11 +111,8 @@ void find_segments(const Model& model, int curve, const Points<double>& start, c
     if (!facing.pieces.empty() && !(area_share(facing.pieces, point, start, moved, model.node_count) >= least_share))
       facing.pieces.clear();
     if (facing.pieces.empty()) {
-      const Vec<double, 2> x = positions.col(point.nodes[0]).head<2>();
-      const auto counts = [&](int facet) {
-        return !of_itself || master.own.at(point.nodes[0]).may_face(master.patches, facet);
-      };
-      const auto nearest = search.nearest(x, counts);
+      const auto nearest = of_itself ? nearest_of_itself(search, master, positions, point)
+                                     : search.nearest(positions.col(point.nodes[0]).head<2>());
       const bool is_any = nearest.facet >= 0;  // (else a side that may touch itself nowhere near)
       facing.distance =
           is_any ? nearest.distance : (positions.rowwise().maxCoeff() - positions.rowwise().minCoeff()).norm();

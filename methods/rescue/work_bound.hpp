@@ -23,7 +23,8 @@ class WorkBound {
   WorkBound(const Model& model, const Counters& counters, int max_iterations, long spent)
       : counters_(counters), each_(max_iterations) {
     const bool linear = model.effects.linear_bulk && !model.effects.current_geometry;
-    const long each = std::max(each_, least_each), affordable = dofs_in_vain / std::max(model.dof_count(), 1);
+    const long size = model.dof_count() + dofs_a_point * static_cast<long>(model.points.size());
+    const long each = std::max(each_, least_each), affordable = dofs_in_vain / std::max(size, 1L);
     most_ = std::clamp(std::max(spent_again * spent, affordable), few_in_vain * each, equilibria_in_vain * each);
     if (linear) most_ = std::numeric_limits<long>::max();
   }
@@ -52,7 +53,8 @@ class WorkBound {
   // Bounds in units of max_iterations: the most, and the least. Steps that succeeded took up to 20.
   static constexpr long equilibria_in_vain = 50, few_in_vain = 4;
   static constexpr long dofs_in_vain = 2'000'000;  // iterations times displacements: 3 to 10 s at 3000
-  static constexpr long spent_again = 10;          // where the run was dear so far, it may be so on
+  static constexpr long dofs_a_point = 10;         // a contact point takes as long as these
+  static constexpr long spent_again = 5;           // where the run was dear so far, it may be so on
   static constexpr long least_each = 100;          // for a small max_iterations, which is chosen to have steps cut
   const Counters& counters_;
   long each_, most_ = 0, vain_ = 0, before_ = 0;

@@ -12,6 +12,7 @@
 #include "methods/stepping/drive.hpp"
 #include "methods/stepping/engine_choice.hpp"
 #include "methods/stepping/path.hpp"
+#include "methods/stepping/stability.hpp"
 
 namespace stickslip {
 
@@ -122,6 +123,22 @@ bool drives_together(const Run<T>& run, double start, double end, const Incremen
   return cross_between(model, slots, start, end);
 }
 
+/// Displacements that are not finite are no solution. (An engine may eliminate dofs that no residual contains.)
+template <class T>
+void refuse_infinite(Increment<T>& increment) {
+  if (!increment.usable() || increment.state.displacement.allFinite()) return;
+  increment.status = Status::not_finite;
+  increment.cut_off = false;
+  increment.message = "the displacements are not finite";
+}
+
+/// Whether an increment failed for a reason that is the same however short it is.
+template <class T>
+bool no_smaller_step_helps(const Run<T>& run, double start, double end, const Increment<T>& failed) {
+  if (failed.status == Status::no_equilibrium) return unbalanced_body(run.model, run.slots, end) != balanced;
+  return drives_together(run, start, end, failed);
+}
+
 /// Ends a step to the time `target` that found no solution: the increment that failed first is then the last.
 template <class T>
 void give_up(const Run<T>& run, double target, const WorkBound& bound, Increment<T> failed,
@@ -154,11 +171,13 @@ long spent_on(const std::vector<Increment<T>>& increments) {
 template <class T>
 bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
   constexpr double smallest = 1.0 / 1024, regrowth = 1.5;
-  constexpr double patient = 0.2;  // share of the step at which nonlinear bodies turn to the motion
+  constexpr double patient = 0.2;      // share of the step at which nonlinear bodies turn to the motion
+  constexpr double steady = 1.0 / 64;  // share to which a step is cut so that it ends in a stable equilibrium
   const std::size_t start_count = trajectory.increments.size();
   const double start = start_count ? trajectory.increments.back().time : 0;
   double reached = start, step = target - start;
   int easy = 0, cutbacks = 0;
+  bool buckles = false;  // whether an attempt passed several places where bodies begin to give way: then none is passed
   std::optional<Increment<T>> failed;
   WorkBound bound(run.model, run.account.counters, newton_of(run.method).max_iterations,
                   spent_on(trajectory.increments));
@@ -174,6 +193,7 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
     const State<T>& previous = increments.empty() ? trajectory.initial : increments.back().state;
     const auto factor = increments.empty() ? std::vector<double>{} : increments.back().rho_factor;
     const bool may_move = linear || !may_cut || !run.free.words.empty() || step < patient * (target - start);
+    const RunScales scales = run.account.scales;
     bound.begin();
     run.start = reached;
     auto increment = find_increment(run, previous, factor, next, bound, may_move);
@@ -181,12 +201,14 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
     increment.time = next;
     increment.requested = last;
     increment.cutbacks = cutbacks;
-    if (increment.usable() && !increment.state.displacement.allFinite()) {
-      increment.status = Status::not_finite;  // (an engine may eliminate dofs that no residual contains)
-      increment.cut_off = false;
-      increment.message = "the displacements are not finite";
-    }
-    if (increment.usable()) {
+    refuse_infinite(increment);
+    if (increment.usable() && may_cut) increment.unresisted = motions_unresisted(run, previous, increment);
+    const int more = increment.unresisted - (increments.empty() ? 0 : increments.back().unresisted);
+    const bool passes = increment.usable() && more > (buckles ? 0 : 1) && !bound.is_spent() &&
+                        next - reached > steady * (target - start);
+    buckles |= passes;
+    if (passes) run.account.scales = scales;
+    if (increment.usable() && !passes) {
       look_beside(run, trajectory, factor, reached, increment);
       trajectory.increments.push_back(std::move(increment));
       if (last) return true;
@@ -194,10 +216,8 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
       if (++easy >= 3) step *= regrowth;
       continue;
     }
-    const bool impossible = increment.status == Status::no_equilibrium
-                                ? unbalanced_body(run.model, run.slots, next) != balanced
-                                : drives_together(run, reached, next, increment);
-    if (!failed) failed = std::move(increment);
+    const bool impossible = !passes && no_smaller_step_helps(run, reached, next, increment);
+    if (!failed && !passes) failed = std::move(increment);
     easy = 0;
     step = (next - reached) / 2;
     const bool vanishes = !(reached + step > reached && reached + step < next);  // no number lies between

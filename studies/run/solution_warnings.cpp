@@ -61,7 +61,9 @@ void add_other_solutions(const CaseResult& result, std::vector<Warning>& warning
 void add_unstable_steps(const CaseResult& result, std::vector<Warning>& warnings) {
   if (result.problem->model.scene.arc_length) return;
   const auto steps = solved_steps(result);
-  const auto is_unstable = [](const StepResult& step) { return step.increment->unstable; };
+  const auto is_unstable = [](const StepResult& step) {
+    return step.increment->unstable || step.increment->unresisted > 1;
+  };
   const auto first = std::find_if(steps.begin(), steps.end(), is_unstable);
   if (first == steps.end()) return;
   const auto count = std::count_if(first, steps.end(), is_unstable);

@@ -83,6 +83,26 @@ def belt(nodes=8, friction=0.3, angle=math.pi):
     return ratio, ratio * 2 * nodes * t / (1 - (friction * t) ** 2)
 
 
+def complete_elliptic(k):
+    """K(k) and E(k), by the arithmetic-geometric mean."""
+    a, b, c, weight = 1.0, math.sqrt(1 - k * k), k, 1.0
+    lost = k * k / 2
+    while abs(c) > 1e-16:
+        a, b, c = (a + b) / 2, math.sqrt(a * b), (a - b) / 2
+        lost, weight = lost + weight * c * c, 2 * weight
+    return math.pi / (2 * a), math.pi / (2 * a) * (1 - lost)
+
+
+def elastica_crown(length, shortening):
+    """How far the middle of an inextensible bar with clamped ends moves aside in its first shape."""
+    low, high = 0.0, 1.0 - 1e-12  # of the modulus k; shortening = 2 length (1 - E / K)
+    for _ in range(100):
+        k = (low + high) / 2
+        K, E = complete_elliptic(k)
+        low, high = (k, high) if 2 * length * (1 - E / K) < shortening else (low, k)
+    return length * k / complete_elliptic(k)[0]
+
+
 if __name__ == "__main__":
     for friction, load in ((1, .5), (1, 1.5), (1, 2.5), (2, 1.9), (2, 2.5), (3, 1.9), (3, 2.5), (3, 3.5)):
         print(f"point on a wall, friction {friction}, F_t {load}:", point_on_a_wall((1, .5, 1), (load, 1), friction))
@@ -92,3 +112,4 @@ if __name__ == "__main__":
     print("truss under 3.79:", truss_deflection(3.79), truss_slope(truss_deflection(3.79)))
     print("tractrix:", tractrix())
     print("belt:", belt())
+    print("elastica:", *(elastica_crown(20, 19.8 * t) for t in (.25, .5, .75)))

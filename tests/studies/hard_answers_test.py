@@ -60,6 +60,11 @@ class Answers(unittest.TestCase):
         tension, slope = hard_answers.belt()
         self.assertAlmostEqual(self.answer("belt-over-a-drum", "tight"), -tension, 9)
         self.assertAlmostEqual(self.answer("belt-over-a-drum", "tight/mu"), -slope, 9)
+        crowns = {one.time: one.values[0]
+                  for one in case_file.read_case(SUITE / "beam-buckles-onto-itself.json").answers}
+        self.assertEqual(len(crowns), 3)
+        for time, crown in crowns.items():
+            self.assertAlmostEqual(crown, hard_answers.elastica_crown(20, 19.8 * time), 9)
 
     def test_independent_solver_finds_the_answers(self):
         try:

@@ -182,10 +182,10 @@ class Judgement(unittest.TestCase):
                 "path": [{"time": 0.5, "responses": {"u": 1.0}},
                          {"time": 1.0, "responses": {"u": 2.0, "v": 3.0}, "one_sided": {"u": {"F": [0, None]}}}]}
 
-    def case(self, lines):
+    def case(self, lines, header=HEADER):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "a.json"
-            path.write_text(HEADER + "// from: here\n" + lines + "{")
+            path.write_text(header + "// from: here\n" + lines + "{")
             return case_file.read_case(path)
 
     def green(self, lines, **more):
@@ -210,6 +210,13 @@ class Judgement(unittest.TestCase):
         self.assertFalse(self.green("", certificate="fails"))
         self.assertTrue(self.green("", status="converged_at_roundoff"))
         self.assertFalse(self.green("", status="cycle"))
+
+    def test_holds_a_run_that_must_fail_to_its_answers_before(self):
+        header = HEADER.replace("penalty: converged", "penalty: cycle")
+        for answer, right in (("u at 0.5: 1", True), ("u at 0.5: 2", False), ("u: 7", True)):
+            row = self.row(status="cycle")
+            judge.judge(self.case(f"// answer {answer} within 1e-9\n", header), row)
+            self.assertEqual(row["green"], right, answer)
 
     def test_holds_methods_against_one_another(self):
         case = self.case("// agree u: within 1e-3 unless non_unique\n")
