@@ -54,7 +54,8 @@ def points_of(program):
 
 
 def faults(shown, now):
-    """What differs by more than rounding does from machine to machine: errors below 1e-6, and the work to get there."""
+    """What differs by more than rounding does from machine to machine: errors below 1e-5, and the work to get there. (Of
+    one setting of Uzawa's method two processors made 1.07e-6 and 1.69e-6, with a back-solve between them.)"""
     found = []
     if abs(shown["mesh"] / now["mesh"] - 1) > 0.02:
         found.append(f"the mesh's error is shown as {shown['mesh']}, but is {now['mesh']}")
@@ -64,7 +65,7 @@ def faults(shown, now):
             found.append(f"{curve}: other points are shown than there are")
             continue
         for old, new in zip(a, b):
-            rounding = max(old[2], new[2]) < 1e-6 or (curve.startswith("penalty") and old[0] > 1e5)
+            rounding = max(old[2], new[2]) < 1e-5 or (curve.startswith("penalty") and old[0] > 1e5)
             allowed = 1000 if rounding else 1.1
             if not 1 / allowed <= old[2] / new[2] <= allowed or not 0.75 <= old[1] / new[1] <= 1.33 or \
                     (old[3] != new[3] and not rounding):
