@@ -224,8 +224,7 @@ class Contact {
       }
     }
     const bool along_curve = scene_.finite && !master_.patches.empty();
-    if (share <= (along_curve ? 0.01 : 1e-12) * whole)
-      return {master_.foot(seeker(node, x)).away_from(x.col(node)), node};
+    if (share <= (along_curve ? 0.01 : 1e-12) * whole) return {master_.nearest(seeker(node, x)), node};
     touch.normal = (along_curve ? right_of(touch.tangent) : touch.normal).normalized();
     touch.gap = touch.relative.dot(touch.normal) / touch.area;
     touch.y /= touch.area;

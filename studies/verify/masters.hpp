@@ -135,6 +135,14 @@ class Master {
     return foot;
   }
 
+  /// The distance of a point that faces nothing; the size of the scene if there is nothing that it may touch.
+  Foot nearest(const Seeker& seeker) const {
+    if (patches.empty()) return foot_on_shape(seeker.x).away_from(seeker.x);
+    const Place place = closest({seeker.node, seeker.x, itself_ ? seeker.outward : Vec3(0, 0, 0)});
+    if (place.patch < 0) return {.gap = (at.rowwise().maxCoeff() - at.rowwise().minCoeff()).norm()};
+    return Foot{false, position(place), right_of(position(place, 1)).normalized(), 0, place}.away_from(seeker.x);
+  }
+
   /// What a point of a side that touches itself does not face: its own wall. `seeker`: the point at the start.
   void set_wall(const Seeker& seeker) {
     const Vec3 x = seeker.x, inward = -seeker.outward.normalized();
