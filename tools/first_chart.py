@@ -54,8 +54,9 @@ def points_of(program):
 
 
 def faults(shown, now):
-    """What differs by more than rounding does from machine to machine: errors below 1e-5, and the work to get there. (Of
-    one setting of Uzawa's method two processors made 1.07e-6 and 1.69e-6, with a back-solve between them.)"""
+    """What differs by more than rounding does from machine to machine: errors below 1e-6, and the work to get there.
+    Uzawa's method with a tolerance of 1e-5 ends, one back-solve earlier or later, at 1.69e-6 by OpenBLAS' kernels for
+    Haswell and Zen, and at 1.07e-6 by those for SkylakeX: below 1e-5 its errors may differ by a factor of two."""
     found = []
     if abs(shown["mesh"] / now["mesh"] - 1) > 0.02:
         found.append(f"the mesh's error is shown as {shown['mesh']}, but is {now['mesh']}")
@@ -65,8 +66,8 @@ def faults(shown, now):
             found.append(f"{curve}: other points are shown than there are")
             continue
         for old, new in zip(a, b):
-            rounding = max(old[2], new[2]) < 1e-5 or (curve.startswith("penalty") and old[0] > 1e5)
-            allowed = 1000 if rounding else 1.1
+            rounding = max(old[2], new[2]) < 1e-6 or (curve.startswith("penalty") and old[0] > 1e5)
+            allowed = 1000 if rounding else 2 if curve.startswith("uzawa") and max(old[2], new[2]) < 1e-5 else 1.1
             if not 1 / allowed <= old[2] / new[2] <= allowed or not 0.75 <= old[1] / new[1] <= 1.33 or \
                     (old[3] != new[3] and not rounding):
                 found.append(f"{curve}{old[0]:g} is shown at {old[1:]}, but is at {new[1:]}")

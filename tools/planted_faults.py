@@ -36,7 +36,7 @@ FAULTS = [
     ("face that looks the same way", "core/contact/curve_search.cpp",
      "if (along > 0 || !query.own) return <<<!(along > 0)>>>;", "true"),
     ("side that touches itself beside where it is", "core/contact/curve_search.cpp",
-     "return gap >= -query.own->depth_in(patch, query.last) && <<<xi >= -beside && xi <= 1 + beside>>>;", "true"),
+     "return gap >= -query.own->depth_in(patch, query.last) && <<<is_beside_facet(off.dot(tau) / tau.squaredNorm())>>>;", "true"),
     ("boxes further away than they are", "core/contact/box_tree.hpp",
      "const { return <<<(low - x).cwiseMax(x - high).cwiseMax(0.0).norm()>>>; }",
      "1.5 * (low - x).cwiseMax(x - high).cwiseMax(0.0).norm()"),

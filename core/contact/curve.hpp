@@ -53,6 +53,13 @@ struct Patch {
 /// this. So the angle exceeds 120 degrees, and the two sides of a corner never touch.
 inline constexpr double least_against = 0.5;
 
+/// Whether a place whose foot has the coordinate xi on a facet is beside it, up to half its length past an end. Farther
+/// away a place is not inside of the facet.
+inline bool is_beside_facet(double xi) {
+  constexpr double past_end = 0.5;
+  return xi >= -past_end && xi <= 1 + past_end;
+}
+
 /// A contact point that is a vertex of the curve that it faces: a side in contact with itself. It faces only patches
 /// that come after it on the curve, so of two positions that touch exactly one is the slave. It never faces a patch
 /// that it is a vertex of, nor a patch of its own wall.

@@ -63,10 +63,8 @@ bool CurveSearch::is_eligible(int patch, const Query& query) const {
   if (along > -least_against * outward.norm() * tau.norm() || !query.own->may_face(patches_, patch)) return false;
   const Vec<double, 2> off = query.x - a;
   const double gap = (off[0] * tau[1] - off[1] * tau[0]) / tau.norm();
-  constexpr double beside = 0.5;  // facet lengths: farther past its ends x is not inside of a facet
-  const double xi = off.dot(tau) / tau.squaredNorm();
   if (gap >= 0) return true;
-  return gap >= -query.own->depth_in(patch, query.last) && xi >= -beside && xi <= 1 + beside;
+  return gap >= -query.own->depth_in(patch, query.last) && is_beside_facet(off.dot(tau) / tau.squaredNorm());
 }
 
 void CurveSearch::compare_facet(int patch, const Vec<double, 2>& x, Nearest& best) const {

@@ -59,7 +59,6 @@ class OwnDepths {
 /// which is outside of it or beside it.
 FacetSearch::Nearest nearest_of_itself(const FacetSearch& search, const MasterCurve& master,
                                        const Points<double>& positions, const ContactPoint& point) {
-  constexpr double beside = 0.5;  // facet lengths past an end, as CurveSearch has it
   const auto right_of = [](const Vec<double, 2>& along) { return Vec<double, 2>(along[1], -along[0]); };
   const auto along = [&](int from, int to) -> Vec<double, 2> {
     return (positions.col(to) - positions.col(from)).head<2>();
@@ -71,10 +70,9 @@ FacetSearch::Nearest nearest_of_itself(const FacetSearch& search, const MasterCu
   return search.nearest(positions.col(node).head<2>(), [&](int facet) {
     const int first = master.facets[facet][0];
     const Vec<double, 2> tau = along(first, master.facets[facet][1]), normal = right_of(tau), off = along(first, node);
-    const double xi = off.dot(tau) / tau.squaredNorm();
     return own.may_touch(master.patches, facet) &&
            normal.dot(outward) <= -least_against * normal.norm() * outward.norm() &&
-           (normal.dot(off) >= 0 || (xi >= -beside && xi <= 1 + beside));
+           (normal.dot(off) >= 0 || is_beside_facet(off.dot(tau) / tau.squaredNorm()));
   });
 }
 

@@ -202,9 +202,9 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
     increment.requested = last;
     increment.cutbacks = cutbacks;
     refuse_infinite(increment);
-    if (increment.usable() && may_cut) increment.unresisted = motions_unresisted(run, previous, increment);
-    const int more = increment.unresisted - (increments.empty() ? 0 : increments.back().unresisted);
-    const bool passes = increment.usable() && more > (buckles ? 0 : 1) && !bound.is_spent() &&
+    const int before = increments.empty() ? 0 : increments.back().unresisted;
+    increment.unresisted = may_cut ? motions_unresisted(run, previous, increment).value_or(before) : before;
+    const bool passes = increment.usable() && increment.unresisted - before > (buckles ? 0 : 1) && !bound.is_spent() &&
                         next - reached > steady * (target - start);
     buckles |= passes;
     if (passes) run.account.scales = scales;

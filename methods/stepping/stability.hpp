@@ -70,12 +70,12 @@ bool may_buckle(const Run<T>& run) {
                      [](const auto& body) { return is_continuum(body.mesh.shape); });
 }
 
-/// Number of motions that nothing resists in the equilibrium of an increment, of which the engine made the last tangent;
-/// 0 if it is not known.
+/// Number of motions that nothing resists in the equilibrium of an increment, of which the engine made the last tangent.
+/// Nothing if it is not known, or if there is no equilibrium.
 template <class T>
-int motions_unresisted(Run<T>& run, const State<T>& previous, const Increment<T>& increment) {
-  if (!may_buckle(run)) return 0;
-  return run.engine.motions_unresisted(contact_springs(run, previous, increment), run.account.counters).value_or(0);
+std::optional<int> motions_unresisted(Run<T>& run, const State<T>& previous, const Increment<T>& increment) {
+  if (!increment.usable() || !may_buckle(run)) return std::nullopt;
+  return run.engine.motions_unresisted(contact_springs(run, previous, increment), run.account.counters);
 }
 
 }  // namespace stickslip

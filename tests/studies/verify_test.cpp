@@ -238,6 +238,23 @@ TEST(Verify, HoldsForEachSurfaceAndDiscretization) {
   }
 }
 
+/// A bar that bends aside: of its nodes some may touch another part of it, none does, and some may touch nothing.
+TEST(Verify, HoldsForTheGapOfASideThatDoesNotTouchItself) {
+  json bar = json::parse(R"({
+    "strain": "finite",
+    "bodies": {"b": {"mesh": {"box": {"min": [-10, -0.25], "max": [10, 0.25], "cells": [40, 2]}}}},
+    "contacts": {"self": {"between": ["b"], "self": true}},
+    "supports": [{"on": "b.left", "move": {"x": [[0, 0], [1, 4]], "y": 0}},
+                 {"on": "b.right", "move": {"x": [[0, 0], [1, -4]], "y": 0}}],
+    "loads": [{"on": "b.top", "force": [0, 0.05]}],
+    "time": {"end": 1, "steps": 8},
+    "responses": {"gap": {"gap": {"contact": "self", "take": "min"}}}})");
+  bar["bodies"]["b"]["material"] = rubber();
+  const auto solved = solve(bar, "monolithic_al");
+  EXPECT_GT(solved.result["steps"].back()["responses"]["gap"].get<double>(), 1);  // (round a corner it is half a cell)
+  EXPECT_THAT(broken(certificate(solved)), testing::IsEmpty());
+}
+
 TEST(Verify, HoldsForSolidBodiesInSpace) {
   for (const char* element : {"H8", "H8_mean_dilatation", "T4"})
     for (const auto& [strain, material] :
