@@ -5,6 +5,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/contact/contact_point.hpp"
+#include "core/model/contact_assembly.hpp"
 #include "core/model/point_tangent.hpp"
 #include "methods/newton/regularisation.hpp"
 #include "tests/support/scenes.hpp"

@@ -2,7 +2,7 @@
 /// (methods/stepping/increment.hpp).
 #pragma once
 
-#include "methods/stepping/checkpoints.hpp"
+#include "methods/stepping/run.hpp"
 
 namespace stickslip {
 
@@ -15,11 +15,5 @@ Trajectory<double> solve(const Model& model, const Slots<double>& slots, const M
 /// The same into an empty trajectory, which on_step (RunOptions) may read after each step.
 void solve(const Model& model, const Slots<double>& slots, const Method& method, const RunOptions& options,
            Workspace<double>& workspace, Trajectory<double>& trajectory);
-
-/// The stretch of a run that contains the thin increment n, whole again. `workspace`: that of the run; it is left as it
-/// was. The work is added to `counters`.
-Stretch<double> solve_again(const Model& model, const Slots<double>& slots, const Method& method,
-                            const Trajectory<double>& trajectory, std::size_t n, Workspace<double>& workspace,
-                            Counters& counters);
 
 }  // namespace stickslip

@@ -1,10 +1,12 @@
 #include "sensitivity/adjoint.hpp"
 
+#include "core/model/element_nodes.hpp"
 #include "core/model/objective.hpp"
 #include "core/model/storage.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "sensitivity/pull_back_inside.hpp"
 #include "sensitivity/schemes.hpp"
+#include "sensitivity/whole_states.hpp"
 
 namespace stickslip {
 namespace {

@@ -1,10 +1,12 @@
 #include "sensitivity/differentiate.hpp"
 
+#include "core/model/element_nodes.hpp"
 #include "core/model/storage.hpp"
 #include "sensitivity/nearest_change.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "sensitivity/response_ties.hpp"
 #include "sensitivity/schemes.hpp"
+#include "sensitivity/whole_states.hpp"
 
 namespace stickslip {
 

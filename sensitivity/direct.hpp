@@ -10,6 +10,7 @@
 /// schemes differ, as the methods do, in what they pass for D lambda. [MTV94], [SLK10]
 #pragma once
 
+#include "methods/newton/regularisation.hpp"
 #include "sensitivity/differentiation.hpp"
 #include "sensitivity/tangent.hpp"
 

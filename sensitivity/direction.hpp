@@ -1,6 +1,7 @@
 /// The scalar of direct differentiation.
 #pragma once
 
+#include "core/model/contact_assembly.hpp"
 #include "core/model/slots.hpp"
 
 namespace stickslip {
@@ -10,5 +11,6 @@ inline constexpr int directions = 4;
 using Direction = Dual<directions>;
 
 STICKSLIP_SLOTS(extern, Direction);  // compiled in directions.cpp
+STICKSLIP_CONTACT(extern, Direction);
 
 }  // namespace stickslip

@@ -2,11 +2,15 @@
 #include <numeric>
 
 #include "core/engine/body_matrix.hpp"
+#include "core/model/contact_assembly_impl.hpp"
+#include "core/model/element_nodes.hpp"
+#include "core/model/slots_impl.hpp"
 #include "sensitivity/differentiation.hpp"
 
 namespace stickslip {
 
 STICKSLIP_SLOTS(, Direction);
+STICKSLIP_CONTACT(, Direction);
 
 namespace {
 

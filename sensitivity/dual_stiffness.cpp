@@ -3,6 +3,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "core/model/element_nodes.hpp"
+
 namespace stickslip {
 
 DualStiffness::DualStiffness(const Model& model, const Slots<Direction>& slots, const ElementLists& lists)

@@ -11,6 +11,7 @@
 #include "sensitivity/open_responses.hpp"
 #include "sensitivity/quotients.hpp"
 #include "sensitivity/vertex_margin.hpp"
+#include "sensitivity/whole_states.hpp"
 
 namespace stickslip {
 namespace {

@@ -8,6 +8,7 @@
 #include "sensitivity/sided_geometry.hpp"
 #include "sensitivity/ties/search.hpp"
 #include "sensitivity/ties/tie.hpp"
+#include "sensitivity/whole_states.hpp"
 
 namespace stickslip {
 namespace {

@@ -17,9 +17,10 @@
 
 #include "sensitivity/differentiate.hpp"
 #include "sensitivity/ties/scales.hpp"
-#include "sensitivity/whole_states.hpp"
 
 namespace stickslip {
+
+class WholeStates;  // sensitivity/whole_states.hpp
 
 /// Distance of the nearest point from a change of state, dimensionless; infinity if there is no point.
 ///

@@ -3,6 +3,7 @@
 /// problem. Adjoint: one transposed solve; the derivative by lambda_T is added to that by the stored traction. [MTV94],
 /// [SLK10 sec. 3]
 
+#include "methods/stepping/increment.hpp"
 #include "sensitivity/direct.hpp"
 #include "sensitivity/pull_back.hpp"
 #include "sensitivity/schemes.hpp"

@@ -1,3 +1,4 @@
+#include "core/model/element_nodes.hpp"
 #include "core/model/with_law.hpp"
 #include "core/solids/element_work.hpp"
 #include "sensitivity/pull_back.hpp"

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/engine/shared_forces.hpp"
+#include "core/model/stencil.hpp"
 #include "sensitivity/force_search.hpp"
 
 namespace stickslip {

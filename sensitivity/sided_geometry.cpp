@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/model/contact_geometry.hpp"
 #include "core/model/pairing.hpp"
 #include "sensitivity/ties/scales.hpp"
 

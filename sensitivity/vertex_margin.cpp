@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "core/contact/segments.hpp"
 #include "core/model/loading.hpp"
 #include "core/model/positions.hpp"
 #include "sensitivity/ties/edge_tie.hpp"

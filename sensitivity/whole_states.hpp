@@ -3,6 +3,7 @@
 #pragma once
 
 #include "methods/method.hpp"
+#include "methods/stepping/checkpoints.hpp"
 
 namespace stickslip {
 

@@ -83,6 +83,8 @@ double BodyMatrix<T>::largest_diagonal() const {
 #define STICKSLIP_TANGENTS(EXTERN, T)                                                                                 \
   EXTERN template Vector<T> bulk_tangent_times(const Model&, const Slots<T>&, const BodyMotion<T>&, const Vector<T>&, \
                                                const ElementLists*);                                                  \
+  EXTERN template void for_each_follower_tangent(const Model&, const Slots<T>&, const BodyMotion<T>&,                 \
+                                                 const ElementSink<T>&);                                              \
   EXTERN template std::vector<T> assemble_bodies(const Model&, const Slots<T>&, const RowLists&, const Pattern&,      \
                                                  const BodyMotion<T>*, BodyKind)
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/model/element_nodes.hpp"
 #include "core/model/slots.hpp"
 
 namespace stickslip {

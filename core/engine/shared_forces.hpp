@@ -3,6 +3,7 @@
 
 #include "core/engine/engine.hpp"
 #include "core/model/point_tangent.hpp"
+#include "core/model/stencil.hpp"
 
 namespace stickslip {
 

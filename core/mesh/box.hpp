@@ -1,4 +1,4 @@
-/// Block along the axes, in the plane or in space, numbered as a grid (core/mesh/grid.hpp).
+/// Block along the axes, in the plane or in space, numbered as a grid (core/mesh/structured.hpp).
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/algebra/described.hpp"
-#include "core/mesh/grid.hpp"
+#include "core/mesh/structured.hpp"
 
 namespace stickslip {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/mesh/grid.hpp"
 #include "core/mesh/sides.hpp"
+#include "core/mesh/structured.hpp"
 
 namespace stickslip {
 namespace {

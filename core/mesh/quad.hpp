@@ -1,4 +1,4 @@
-/// Convex quadrilateral, a bilinear image of a grid (core/mesh/grid.hpp): corner 0 to corner 1 is its bottom, then
+/// Convex quadrilateral, a bilinear image of a grid (core/mesh/structured.hpp): corner 0 to corner 1 is its bottom, then
 /// right, top and left.
 #pragma once
 
@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "core/algebra/described.hpp"
-#include "core/mesh/grid.hpp"
+#include "core/mesh/structured.hpp"
 
 namespace stickslip {
 

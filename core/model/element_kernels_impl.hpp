@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/model/element_kernels.hpp"
+#include "core/model/element_nodes.hpp"
 #include "core/model/flow_points.hpp"
 #include "core/model/with_law.hpp"
 #include "core/solids/elements.hpp"

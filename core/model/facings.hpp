@@ -1,181 +1,25 @@
 /// Search for what contact points face of their curves, where displacements have moved them.
 #pragma once
 
-#include "core/contact/curve_search.hpp"
-#include "core/contact/surface_search.hpp"
-#include "core/model/contact_geometry.hpp"
-#include "core/model/segment_search.hpp"
-#include "core/model/state.hpp"
+#include "core/model/contact_input.hpp"
 
-namespace stickslip {
-
-/// Regularisation of all points, force per length cubed.
-template <class T>
-using RegularisationField = std::vector<PointRegularisation<T>>;
-
-/// What a contact evaluation reads beside displacement and multiplier.
-template <class T>
-struct ContactInput {
-  const Model& model;
-  const Slots<T>& slots;
-  const RegularisationField<T>& rho;
-  const History<T>& previous;  ///< of the last converged increment
-  ConeRadius cone = ConeRadius::augmented;
-  double time = 0;
-  const std::vector<Facing>* facing = nullptr;  ///< per point, on its curve; nullptr: search for it
-
-  /// Positions at compact displacements, which must outlive them.
-  template <int D = 2>
-  auto positions(const Vector<T>& compact) const {
-    return detail::positions_at<D>(model, slots, compact, time);
-  }
-};
-
-namespace detail {
-
-/// The patch that point p faced in the last increment, or Patch::none.
-template <class T>
-int last_faced(const ContactInput<T>& input, int p) {
-  return input.previous.faces[p] ? input.previous.patch[p] : Patch::none;
-}
-
-inline CurveSearch search_of(const MasterCurve& curve, const Eigen::Matrix2Xd& places) {
-  return {curve.patches, places};
-}
-inline SurfaceSearch search_of(const MasterCurve& curve, const Points<double>& places) {
-  return {curve.surface, places};
-}
-
-/// A curve, in space a surface, where displacements have moved it, and the search along it. Places are from the first
-/// vertex at the start, so that what lies far from the origin is found as near it. Not to be copied.
-template <class T, int D>
-struct MovedCurve {
-  using Place = Vec<double, D>;
-  using Places = std::conditional_t<D == 2, Eigen::Matrix2Xd, Points<double>>;
-  const ContactInput<T>& input;
-  const Vector<T>& compact;  ///< displacements of the contact nodes
-  Place origin;
-  Places places;  ///< of the vertices
-  std::conditional_t<D == 2, CurveSearch, SurfaceSearch> search;
-
-  /// All arguments must outlive this.
-  MovedCurve(const ContactInput<T>& input, const MasterCurve& curve, const Vector<T>& compact)
-      : input(input),
-        compact(compact),
-        origin(values(positions().template vertex<D>(curve, 0).start)),
-        places(places_of(curve)),
-        search(search_of(curve, places)) {}
-  MovedCurve(const MovedCurve&) = delete;
-
-  /// Place of the slave node of a point.
-  Place slave(const ContactPoint& point) const { return place(positions().template slave<D>(point)); }
-  /// Outward normal of the slave side at a point, by the sizes of its facets; zero where it has none.
-  Place outward(const ContactPoint& point) const {
-    const auto displacement = nodal_displacement<D>(compact);
-    Place normal = Place::Zero();
-    for (std::size_t f = 0; f < point.facet_places.size(); ++f) {
-      const auto &facet = point.area_facets[f], &at = point.facet_places[f];
-      Points<double> corners(D, static_cast<Eigen::Index>(facet.size()));
-      std::vector<int> order;
-      for (std::size_t k = 0; k < facet.size(); ++k) {
-        const Vec<T, D> X = input.slots.points.template block<D, 1>(0, facet[k]);
-        corners.col(static_cast<Eigen::Index>(k)) = place({X, displacement(at[k])});
-        order.push_back(static_cast<int>(k));
-      }
-      normal += slave_normal<D>({order}, corners);
-    }
-    return normal;
-  }
-
- private:
-  auto positions() const { return input.template positions<D>(compact); }
-  Place place(const Placed<T, T, D>& at) const { return values(at.start) - origin + values(at.moved); }
-  Places places_of(const MasterCurve& curve) const {
-    Places at(D, curve.vertex_count);
-    for (int v = 0; v < curve.vertex_count; ++v) at.col(v) = place(positions().template vertex<D>(curve, v));
-    return at;
-  }
-};
-
-/// Sets what the points of an integrated curve face.
-template <class T>
-void find_moved_segments(const ContactInput<T>& input, int curve, const Vector<T>& compact,
-                         std::vector<Facing>& found) {
-  const Model& model = input.model;
-  const auto& master = model.curves[curve];
-  Points<double> start = values(input.slots.points);
-  if (master.obstacle >= 0) start.conservativeResize(Eigen::NoChange, model.node_count + master.vertex_count);
-  Points<double> moved = Points<double>::Zero(start.rows(), start.cols());
-  const auto displacement = nodal_displacement(compact);
-  for (int n = 0; n < static_cast<int>(model.contact_nodes.size()); ++n)
-    moved.col(model.contact_nodes[n]).template head<2>() = values(displacement(n));
-  for (int v = 0; master.obstacle >= 0 && v < master.vertex_count; ++v) {
-    const auto vertex = input.positions(compact).vertex(master, v);
-    start.col(model.node_count + v) = values(vertex.start);
-    moved.col(model.node_count + v) = values(vertex.moved);
-  }
-  std::vector<int> last;
-  for (int p = 0; !master.own.empty() && p < static_cast<int>(found.size()); ++p)
-    last.push_back(model.points[p].curve == curve ? last_faced(input, p) : Patch::none);
-  find_segments(model, curve, start, moved, last, found);
-}
-
-/// Sets what the points of a curve face; the arguments are those of facings().
-template <class T, int D>
-void find_along_curve(const ContactInput<T>& input, int curve, const Vector<T>& compact, const std::vector<int>& kept,
-                      std::vector<Facing>& found) {
-  const Model& model = input.model;
-  const MovedCurve<T, D> now(input, model.curves[curve], compact);
-  for (int p = 0; p < static_cast<int>(found.size()); ++p) {
-    const auto& point = model.points[p];
-    if (point.curve != curve) continue;
-    const Vec<double, D> x = now.slave(point);
-    if (!kept.empty() && kept[p] != Patch::none) {
-      found[p] = now.search.foot_on(kept[p], x);
-      continue;
-    }
-    if constexpr (D == 2)
-      if (point.own.vertex != Patch::none) {
-        found[p] = now.search.facing_itself(x, now.outward(point), point.own, last_faced(input, p));
-        continue;
-      }
-    found[p] = now.search.facing(x, now.outward(point));
-  }
-}
+namespace stickslip::detail {
 
 /// What each contact point faces of its curve. `compact`: displacements of the contact nodes; `kept`: per point, the
 /// patch on which its foot is to be found, or Patch::none to search the curve; empty: search for all points.
 template <class T>
-std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compact, const std::vector<int>& kept = {}) {
-  const Model& model = input.model;
-  std::vector<Facing> found(model.points.size());
-  for (int c = 0; c < static_cast<int>(model.curves.size()); ++c) {
-    if (model.curves[c].is_integrated())
-      find_moved_segments(input, c, compact, found);
-    else
-      with_dimension(model.dimension, [&]<int D>() { find_along_curve<T, D>(input, c, compact, kept, found); });
-  }
-  return found;
-}
+std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compact, const std::vector<int>& kept = {});
 
 /// Places the vertices of curves in contact with themselves that face nothing beside their nearest patches, from which
 /// they slide if they come onto one. An equilibrium needs it, and no iterate on the way: the search looks far.
 template <class T>
-void place_open_vertices(const ContactInput<T>& input, const Vector<T>& compact, ContactField<T>& field) {
-  std::optional<MovedCurve<T, 2>> now;
-  for (int p = 0, of = -1; p < static_cast<int>(field.facing.size()); ++p) {
-    const auto& point = input.model.points[p];
-    auto& facing = field.facing[p];
-    if (point.own.vertex == Patch::none || point.foot < 0 || facing.patch != Patch::none) continue;
-    if (of != point.curve) now.emplace(input, input.model.curves[point.curve], compact);
-    of = point.curve;
-    facing.nearest =
-        now->search.nearest_of_itself(now->slave(point), now->outward(point), point.own, last_faced(input, p));
-    const bool is_near = facing.nearest != Patch::none;
-    field.foot[point.foot] = is_near ? place_beside(input.positions(compact), point, facing.nearest) : T(0);
-  }
-}
+void place_open_vertices(const ContactInput<T>& input, const Vector<T>& compact, ContactField<T>& field);
 
-}  // namespace detail
+/// Both in a scalar, as STICKSLIP_SLOTS; the source includes core/model/facings_impl.hpp.
+#define STICKSLIP_FACINGS(EXTERN, T)                                                                              \
+  EXTERN template std::vector<Facing> facings(const ContactInput<T>&, const Vector<T>&, const std::vector<int>&); \
+  EXTERN template void place_open_vertices(const ContactInput<T>&, const Vector<T>&, ContactField<T>&)
 
-}  // namespace stickslip
+STICKSLIP_FACINGS(extern, double);
+
+}  // namespace stickslip::detail

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "core/model/frames.hpp"
-#include "core/model/load_vector.hpp"
+#include "core/model/slots.hpp"
+#include "core/model/supports.hpp"
 
 namespace stickslip {
 

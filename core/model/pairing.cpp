@@ -9,10 +9,12 @@
 #include "core/contact/face_search.hpp"
 #include "core/contact/facet_search.hpp"
 #include "core/contact/segments.hpp"
+#include "core/contact/surface_search.hpp"
 #include "core/mesh/sides.hpp"
-#include "core/model/facings.hpp"
+#include "core/model/facings_impl.hpp"
 #include "core/model/master_curve.hpp"
 #include "core/model/segment_search.hpp"
+#include "core/model/slave_point.hpp"
 
 namespace stickslip {
 namespace {
@@ -110,60 +112,6 @@ bool find_master(const Points<double>& points, const Model& model, const Facets&
     throw ModelError("is where a slave node is, from which no place of the surface is nearer than another",
                      "/obstacles/" + obstacle.name + "/" + key);
   return true;
-}
-
-/// Mean length of the facets at a slave node, in space of their edges; 0 without facets.
-double local_size(const Points<double>& points, const ContactPoint& point) {
-  double size = 0;
-  if (points.rows() == 3) {
-    int edges = 0;
-    for (const auto& face : point.area_edges)
-      for (std::size_t a = 0; a < face.size(); ++a, ++edges)
-        size += (points.col(face[a]) - points.col(face[(a + 1) % face.size()])).norm();
-    return edges > 0 ? size / edges : 0;
-  }
-  for (const auto& facet : point.area_facets)
-    size += (points.col(facet[0]) - points.col(facet[1])).norm() / static_cast<double>(point.area_facets.size());
-  return size;
-}
-
-/// One contact while its points are made.
-struct Pairing {
-  int index;     ///< in Scene::contacts
-  int obstacle;  ///< in Scene::obstacles; -1: deformable master
-  SideSet slave, master;
-};
-
-/// Appends a point, numbers its multiplier and sets its effects.
-void add_point(Model& model, ContactPoint point) {
-  model.effects.contact = true;
-  model.effects.friction |= point.tangents > 0;
-  model.effects.coupled_friction |= point.tangents > 0 && model.scene.contacts[point.contact].friction->couples();
-  model.effects.deformable_master |= point.obstacle < 0;
-  point.multiplier = model.multiplier_count;
-  model.multiplier_count += point.components();
-  model.points.push_back(std::move(point));
-}
-
-/// Contact point of a slave node. The caller sets its master.
-ContactPoint slave_point(const Model& model, const Points<double>& points, const Pairing& pairing, int node) {
-  const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  ContactPoint point;
-  point.contact = pairing.index;
-  point.obstacle = pairing.obstacle;
-  point.nodes = {node};
-  point.slave_body = pairing.slave.body;
-  for (const auto& facet : pairing.slave.facets)
-    if (std::find(facet.begin(), facet.end(), node) != facet.end()) point.area_facets.push_back(facet);
-  for (const auto& edge : pairing.slave.edges)
-    if (std::find(edge.begin(), edge.end(), node) != edge.end()) point.area_edges.push_back(edge);
-  point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
-  point.mesh_size = local_size(points, point);
-  point.tie_length = 8 * unit_roundoff * (point.mesh_size + points.col(node).cwiseAbs().maxCoeff());
-  // a node on the axis of revolution cannot slide
-  const bool slides = model.scene.contacts[pairing.index].friction && !model.is_on_axis(points, node);
-  point.tangents = slides ? model.dimension - 1 : 0;
-  return point;
 }
 
 Facets facets_of_master(const Model& model, const Points<double>& points, const Pairing& pairing) {

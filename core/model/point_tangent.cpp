@@ -1,8 +1,7 @@
-#include "core/model/point_tangent.hpp"
+#include "core/model/point_tangent_impl.hpp"
 
 namespace stickslip {
 
-template PointTangent<double> point_tangent(const ContactInput<double>&, int, const Vector<double>&,
-                                            const Vector<double>&, ContactState, const std::vector<Facing>&);
+STICKSLIP_POINT_TANGENT(, double);
 
 }  // namespace stickslip

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/contact/placed.hpp"
-#include "core/model/slot_values.hpp"
+#include "core/model/slots.hpp"
 #include "core/model/supports.hpp"
 
 namespace stickslip::detail {

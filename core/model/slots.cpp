@@ -1,6 +1,8 @@
 #include "core/model/slots.hpp"
 
+#include "core/model/element_nodes.hpp"
 #include "core/model/flow_points.hpp"
+#include "core/model/slots_impl.hpp"
 #include "core/model/with_law.hpp"
 
 namespace stickslip {

@@ -1,12 +1,15 @@
-/// Definitions of the templates in slots.hpp, but those of the bodies' elements (core/model/bodies_impl.hpp).
+/// Definitions of the templates in slots.hpp, with those of the bodies' elements and of the loads.
 #pragma once
 
+#include "core/mesh/generators.hpp"
+#include "core/model/bodies_impl.hpp"
 #include "core/model/contact_geometry.hpp"
+#include "core/model/element_nodes.hpp"
+#include "core/model/load_vector_impl.hpp"
 #include "core/model/slots.hpp"
 
 namespace stickslip {
 
-/// Diagonal D x D blocks of the bodies' stiffness at the contact nodes, in the order of Model::contact_nodes.
 template <class T>
 std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots) {
   const int D = model.dimension;
@@ -32,7 +35,6 @@ std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots
   return blocks;
 }
 
-/// Whether supports hold a contact node along a direction.
 template <class T>
 bool is_held(const Model& model, const Slots<T>& slots, int node, const Vector<double>& direction) {
   constexpr double across = 1e-6;  // of a direction: less is none
@@ -78,9 +80,6 @@ T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& s
   return value(tenth) < value(most) ? tenth : most;
 }
 
-/// k_i of each contact point, from n.K_ii n at the interpolated slave and at the interpolated master nodes (slave only
-/// if the master is rigid). Where a node has next to no stiffness along n (bars along their axis), the mean over all
-/// directions stands in for it.
 template <class T>
 std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
   const auto blocks = nodal_stiffness(model, slots);
@@ -172,7 +171,6 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers) {
   return make_slots(model, numbers, initial_points(model, numbers));
 }
 
-/// Slots of the bodies alone, without contact and loads.
 template <class T>
 Slots<T> make_body_slots(const Model& model, const Numbers<T>& numbers, Points<T> points) {
   Slots<T> slots;
@@ -220,5 +218,3 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
 }
 
 }  // namespace stickslip
-
-#include "core/model/load_vector.hpp"

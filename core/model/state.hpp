@@ -7,9 +7,9 @@
 
 #include "core/contact/contact_point.hpp"
 #include "core/model/history.hpp"
+#include "core/model/model.hpp"
 #include "core/model/result.hpp"
 #include "core/model/seconds.hpp"
-#include "core/model/stencil.hpp"
 
 namespace stickslip {
 
@@ -43,27 +43,6 @@ const PointGeometry<T>& geometry_in(const ContactField<T>& field, const S& slots
 template <class S, class T>
 const T& area_in(const ContactField<T>& field, const S& slots, std::size_t p) {
   return geometry_in(field, slots, p).area;
-}
-
-/// What point p faces of its curve in a field.
-template <class T>
-const Facing& facing_in(const Model& model, const ContactField<T>& field, std::size_t p) {
-  return field.facing.empty() ? model.points[p].facing : field.facing[p];
-}
-
-/// Calls f(n, place) for each n. weights[n] of geometry_in() belongs to the node Model::contact_nodes[place].
-template <class T, class F>
-void for_each_place(const Model& model, const ContactField<T>& field, std::size_t p, F&& f) {
-  std::size_t n = 0;
-  for_each_place(model, model.points[p], facing_in(model, field, p), [&](int place) { f(n++, place); });
-}
-
-/// The nodes to which the weights of geometry_in() belong.
-template <class T>
-std::vector<int> nodes_in(const Model& model, const ContactField<T>& field, std::size_t p) {
-  std::vector<int> nodes;
-  for_each_place(model, field, p, [&](std::size_t, int place) { nodes.push_back(model.contact_nodes[place]); });
-  return nodes;
 }
 
 /// Offset of the tangential quantities of point p. Each earlier point has exactly one normal component.

@@ -1,7 +1,7 @@
 /// The nodes that a contact point touches: what it faces tells them.
 #pragma once
 
-#include "core/model/model.hpp"
+#include "core/model/state.hpp"
 
 namespace stickslip {
 
@@ -26,6 +26,27 @@ void for_each_place(const Model& model, const ContactPoint& point, const Facing&
     f(point.places[0]);
     for_each_place(model.curves[point.curve], facing.patch, f);
   }
+}
+
+/// What point p faces of its curve in a field.
+template <class T>
+const Facing& facing_in(const Model& model, const ContactField<T>& field, std::size_t p) {
+  return field.facing.empty() ? model.points[p].facing : field.facing[p];
+}
+
+/// Calls f(n, place) for each n. weights[n] of geometry_in() belongs to the node Model::contact_nodes[place].
+template <class T, class F>
+void for_each_place(const Model& model, const ContactField<T>& field, std::size_t p, F&& f) {
+  std::size_t n = 0;
+  for_each_place(model, model.points[p], facing_in(model, field, p), [&](int place) { f(n++, place); });
+}
+
+/// The nodes to which the weights of geometry_in() belong.
+template <class T>
+std::vector<int> nodes_in(const Model& model, const ContactField<T>& field, std::size_t p) {
+  std::vector<int> nodes;
+  for_each_place(model, field, p, [&](std::size_t, int place) { nodes.push_back(model.contact_nodes[place]); });
+  return nodes;
 }
 
 }  // namespace stickslip

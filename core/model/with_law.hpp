@@ -1,7 +1,7 @@
 /// From what a body has at run time to the types of its law, its shape and its kinematics.
 #pragma once
 
-#include "core/model/slot_values.hpp"
+#include "core/model/slots.hpp"
 #include "core/solids/elements.hpp"
 
 namespace stickslip::detail {

@@ -16,8 +16,8 @@
 /// What elements make of them is in core/solids/elements.hpp.
 #pragma once
 
-#include "core/solids/kinematics.hpp"
 #include "core/solids/shapes.hpp"
+#include "core/solids/tensor.hpp"
 
 namespace stickslip {
 

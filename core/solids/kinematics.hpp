@@ -1,8 +1,6 @@
 /// Spaces, and how displacements become strains in them.
 #pragma once
 
-#include "core/solids/tensor.hpp"
-
 namespace stickslip {
 
 enum class Space { plane_strain, plane_stress, axisymmetric, solid };
@@ -25,6 +23,9 @@ constexpr bool has_mean_dilatation(Kinematics k) {
          k == Kinematics::space_mean_dilatation;
 }
 constexpr bool is_in_space(Kinematics k) { return k == Kinematics::space || k == Kinematics::space_mean_dilatation; }
+/// Components of a tensor that are not always zero (core/solids/tensor.hpp).
+enum class TensorLayout { plane4, hoop5, full9 };
+
 /// The layout of the displacement gradient and of the stress.
 constexpr TensorLayout layout_of(Kinematics k) {
   if (is_in_space(k)) return TensorLayout::full9;

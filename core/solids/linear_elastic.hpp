@@ -11,7 +11,7 @@
 
 #include "core/algebra/described.hpp"
 #include "core/algebra/scalar.hpp"
-#include "core/solids/kinematics.hpp"
+#include "core/solids/tensor.hpp"
 
 namespace stickslip {
 

@@ -10,10 +10,9 @@
 #pragma once
 
 #include "core/algebra/scalar.hpp"
+#include "core/solids/kinematics.hpp"
 
 namespace stickslip {
-
-enum class TensorLayout { plane4, hoop5, full9 };
 
 template <class T, TensorLayout layout>
 class Tensor {

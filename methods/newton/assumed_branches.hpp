@@ -1,6 +1,7 @@
 /// The branches that Newton's method assumes of contact points: they shape its path, not the solution.
 #pragma once
 
+#include "core/model/contact_assembly.hpp"
 #include "methods/newton/equilibrium.hpp"
 
 namespace stickslip {

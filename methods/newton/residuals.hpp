@@ -6,6 +6,8 @@
 ///   tangential    stick: |dg_T|, over the same; open and slip: |t - lambda|, over the largest traction
 #pragma once
 
+#include "core/model/contact_assembly.hpp"
+#include "core/model/facings.hpp"
 #include "core/model/loading.hpp"
 #include "methods/newton/equilibrium.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/model/contact_assembly.hpp"
+#include "core/model/contact_input.hpp"
 
 namespace stickslip {
 

@@ -29,6 +29,7 @@
 #include <optional>
 
 #include "core/engine/engine.hpp"
+#include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
 #include "methods/stepping/increment.hpp"
 

@@ -2,6 +2,7 @@
 /// those.
 #pragma once
 
+#include "core/model/contact_assembly.hpp"
 #include "core/model/point_tangent.hpp"
 #include "methods/stepping/increment.hpp"
 #include "methods/stepping/prescribed.hpp"

@@ -122,4 +122,10 @@ class Checkpoints {
   std::shared_ptr<Condensation<T>> condensation_;
 };
 
+/// The stretch of a run that contains the thin increment n, whole again. `workspace`: that of the run; it is left as it
+/// was. The work is added to `counters`.
+Stretch<double> solve_again(const Model& model, const Slots<double>& slots, const Method& method,
+                            const Trajectory<double>& trajectory, std::size_t n, Workspace<double>& workspace,
+                            Counters& counters);
+
 }  // namespace stickslip

@@ -9,6 +9,7 @@
 #include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
 #include "core/model/state.hpp"
+#include "core/model/stencil.hpp"
 #include "methods/rescue/statics.hpp"
 #include "methods/stepping/free_bodies.hpp"
 #include "methods/stepping/increment.hpp"

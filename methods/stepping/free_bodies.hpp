@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "core/model/contact_assembly.hpp"
+#include "core/model/frames.hpp"
 #include "core/model/state.hpp"
-#include "methods/stepping/prescribed.hpp"
+#include "core/model/stencil.hpp"
+#include "methods/stepping/words.hpp"
 
 namespace stickslip {
 

@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "core/engine/condensation.hpp"
+#include "core/model/contact_assembly.hpp"
+#include "core/model/facings.hpp"
 #include "methods/newton/equilibrium.hpp"
 #include "methods/newton/regularisation.hpp"
 #include "methods/stepping/free_bodies.hpp"

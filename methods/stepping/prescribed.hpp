@@ -1,32 +1,16 @@
-/// What supports alone drive into one another, which no traction can prevent; and points in words of the scene.
+/// What supports alone drive into one another, which no traction can prevent.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <limits>
 #include <string>
 
 #include "core/engine/shared_forces.hpp"
+#include "core/model/stencil.hpp"
+#include "methods/stepping/words.hpp"
 
 namespace stickslip {
-
-/// Six digits of a number, for messages.
-inline std::string short_number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", x);
-  return text;
-}
-
-/// A contact point in words of the scene: its contact, and where its node was at the start.
-template <class T>
-std::string name_of_point(const Model& model, const Slots<T>& slots, int p) {
-  const auto& point = model.points[p];
-  std::string place;
-  for (int i = 0; i < model.dimension; ++i)
-    place += (i ? ", " : "") + short_number(value(slots.points(i, point.nodes[0])));
-  return "the contact point of " + model.scene.contacts[point.contact].name + " at (" + place + ")";
-}
 
 /// Whether supports prescribe all displacements of a node.
 inline bool is_prescribed(const Model& model, int node) {

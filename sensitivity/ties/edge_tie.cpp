@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/model/contact_geometry.hpp"
+#include "core/contact/surface_search.hpp"
 #include "core/model/loading.hpp"
+#include "core/model/surface_geometry.hpp"
 #include "sensitivity/ties/tie.hpp"
 
 namespace stickslip {

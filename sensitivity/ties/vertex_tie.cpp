@@ -1,4 +1,4 @@
-#include "core/model/contact_geometry.hpp"
+#include "core/model/curve_geometry.hpp"
 #include "core/model/loading.hpp"
 #include "sensitivity/ties/tie.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <pybind11/numpy.h>
 
+#include "methods/stepping/checkpoints.hpp"
 #include "studies/python/result.hpp"
 
 namespace py = pybind11;

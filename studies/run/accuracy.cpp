@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "methods/newton/regularisation.hpp"
 #include "methods/stepping/prescribed.hpp"
 
 namespace stickslip {

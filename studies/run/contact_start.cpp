@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/model/state.hpp"
+#include "core/model/stencil.hpp"
 #include "methods/stepping/free_bodies.hpp"
 #include "studies/run/contact_points.hpp"
 #include "studies/run/side_curve.hpp"

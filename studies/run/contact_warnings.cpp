@@ -7,6 +7,7 @@
 #include "core/model/master_curve.hpp"
 #include "core/model/pairing.hpp"
 #include "core/model/response.hpp"
+#include "core/model/stencil.hpp"
 #include "methods/newton/residuals.hpp"
 #include "studies/run/side_curve.hpp"
 #include "studies/run/turned_surfaces.hpp"

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/model/element_nodes.hpp"
 #include "core/model/loading.hpp"
+#include "core/model/placed_point.hpp"
+#include "core/model/stencil.hpp"
 #include "studies/io/vtu.hpp"
 #include "studies/run/contact_points.hpp"
 #include "studies/run/element_fields.hpp"

@@ -7,6 +7,7 @@
 #include "core/algebra/reverse.hpp"
 #include "core/model/response.hpp"
 #include "core/model/storage.hpp"
+#include "methods/stepping/checkpoints.hpp"
 #include "methods/stepping/engine_choice.hpp"
 #include "sensitivity/differentiation.hpp"
 #include "studies/run/fields.hpp"

@@ -1,5 +1,6 @@
 #include "studies/run/picture_json.hpp"
 
+#include "core/model/element_nodes.hpp"
 #include "methods/stepping/checkpoints.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/input/response_kinds.hpp"

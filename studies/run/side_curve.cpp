@@ -4,6 +4,7 @@
 
 #include "core/model/master_curve.hpp"
 #include "core/model/pairing.hpp"
+#include "core/model/supports.hpp"
 
 namespace stickslip {
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "core/model/element_nodes.hpp"
 #include "core/solids/shapes.hpp"
 #include "methods/newton/residuals.hpp"
 #include "methods/stepping/diagnosis.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/mesh/sides.hpp"
+#include "core/model/element_nodes.hpp"
 #include "studies/run/element_fields.hpp"
 
 namespace stickslip {

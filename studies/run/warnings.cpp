@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/model/stencil.hpp"
 #include "methods/newton/residuals.hpp"
 #include "methods/stepping/free_bodies.hpp"
 #include "studies/io/wording.hpp"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "methods/augmentation/augmentation_status.hpp"
+#include "methods/newton/regularisation.hpp"
 #include "tests/support/solved.hpp"
 
 namespace stickslip::uzawa_test {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/engine/engine.hpp"
+#include "core/model/contact_assembly.hpp"
 #include "methods/newton/residuals.hpp"
 #include "tests/support/sliding_scenes.hpp"
 

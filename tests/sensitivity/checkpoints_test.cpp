@@ -1,4 +1,6 @@
 /// Runs that let states go: the adjoint solves them again, and its gradient has the same bits; and what that spares.
+#include "methods/stepping/checkpoints.hpp"
+
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "core/model/contact_assembly.hpp"
 #include "core/model/point_tangent.hpp"
 #include "tests/support/blocks.hpp"
 #include "tests/support/compiled_slots.hpp"

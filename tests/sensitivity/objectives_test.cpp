@@ -1,6 +1,7 @@
 /// Objectives of responses that the test writes: values and gradients by hand.
 #include <gtest/gtest.h>
 
+#include "core/model/contact_assembly.hpp"
 #include "sensitivity/adjoint.hpp"
 #include "tests/support/solved.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "core/engine/sparse_system.hpp"
 #include "core/model/point_tangent.hpp"
+#include "methods/newton/regularisation.hpp"
 #include "sensitivity/schemes.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/solved.hpp"

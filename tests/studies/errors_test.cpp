@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/model/contact_assembly.hpp"
 #include "studies/sweep/references.hpp"
 #include "studies/sweep/study.hpp"
 #include "tests/support/scenes.hpp"

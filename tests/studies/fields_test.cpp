@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/model/contact_assembly.hpp"
 #include "studies/io/atomic_file.hpp"
 #include "studies/report/picture.hpp"
 #include "studies/run/film.hpp"

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/model/contact_assembly.hpp"
 #include "studies/run/metrics.hpp"
 #include "tests/support/scenes.hpp"
 

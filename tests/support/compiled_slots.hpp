@@ -5,11 +5,14 @@
 #include <complex>
 
 #include "core/engine/body_matrix.hpp"
+#include "core/model/point_tangent.hpp"
 #include "sensitivity/direction.hpp"
 
 namespace stickslip {
 
 STICKSLIP_SLOTS(extern, std::complex<double>);
 STICKSLIP_TANGENTS(extern, std::complex<double>);
+STICKSLIP_CONTACT(extern, std::complex<double>);
+STICKSLIP_POINT_TANGENT(extern, std::complex<double>);
 
 }  // namespace stickslip

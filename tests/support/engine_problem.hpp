@@ -6,6 +6,7 @@
 
 #include "core/engine/condensation.hpp"
 #include "core/engine/engine.hpp"
+#include "core/model/contact_assembly.hpp"
 #include "core/model/facings.hpp"
 #include "core/model/loading.hpp"
 #include "core/model/point_tangent.hpp"

@@ -1,6 +1,7 @@
 /// The tangent that Newton's method solves with, against the complex step of all that is in the equilibrium.
 #pragma once
 
+#include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
 #include "core/model/point_tangent.hpp"
 #include "methods/newton/newton.hpp"

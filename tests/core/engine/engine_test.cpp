@@ -1,6 +1,7 @@
 /// The two engines alone: tangents that belong to the residual, and the condensation against the bodies in full.
 #include <gtest/gtest.h>
 
+#include "core/model/contact_assembly.hpp"
 #include "tests/support/compiled_slots.hpp"
 #include "tests/support/engine_problem.hpp"
 #include "tests/support/largest.hpp"

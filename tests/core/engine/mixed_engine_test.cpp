@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/engine/engine_price.hpp"
+#include "core/model/frames.hpp"
 #include "tests/support/engine_problem.hpp"
 
 namespace stickslip::mixed_engine_test {

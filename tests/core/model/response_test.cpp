@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "core/model/contact_assembly.hpp"
 #include "tests/support/compiled_slots.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/scenes.hpp"

@@ -1,7 +1,8 @@
-/// Nodal forces of a load: consistent shares of what acts on facets and in elements, in any scalar; and those of
-/// pressures that follow a side, by its displacements.
+/// Definitions of the templates in slots.hpp for loads: consistent shares of what acts on facets and in elements, in any
+/// scalar; and those of pressures that follow a side, by its displacements.
 #pragma once
 
+#include "core/model/element_nodes.hpp"
 #include "core/model/slots.hpp"
 
 namespace stickslip {
@@ -147,9 +148,9 @@ Points<U> present_places(const Slots<T>& slots, int b, const std::vector<int>& n
 }
 
 /// What a stretch of the thickness adds to the derivatives of an edge's forces: by displacements of the element behind.
-template <class T, class Sink>
+template <class T>
 void add_thickness_tangent(const Model& model, const Slots<T>& slots, const FollowedEdge<T>& edge, const Points<T>& at,
-                           Sink&& sink) {
+                           const ElementSink<T>& sink) {
   const auto& body = model.bodies[edge.body];
   const auto nodes = element_nodes(body, edge.backing->element);
   Matrix<T> K = Matrix<T>::Constant(2 * nodes.size(), 2 * nodes.size(), T(0));
@@ -166,7 +167,6 @@ void add_thickness_tangent(const Model& model, const Slots<T>& slots, const Foll
 
 }  // namespace detail
 
-/// Nodal forces of the pressures that follow their sides, at displacements of all dofs.
 template <class T>
 Vector<T> follower_forces(const Model& model, const Slots<T>& slots, double t, const Vector<T>& u) {
   Vector<T> forces = Vector<T>::Constant(model.dof_count(), T(0));
@@ -183,8 +183,9 @@ Vector<T> follower_forces(const Model& model, const Slots<T>& slots, double t, c
 
 namespace detail {
 
-template <int D, class T, class Sink>
-void visit_follower_tangents(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, Sink&& sink) {
+template <int D, class T>
+void visit_follower_tangents(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at,
+                             const ElementSink<T>& sink) {
   using Probe = Dual<D == 2 ? 6 : 12, T>;  // dofs of a side
   for_each_followed_edge(model, slots, at.time, at.displacement, [&](const FollowedEdge<T>& edge) {
     const int n = static_cast<int>(edge.nodes.size());
@@ -207,10 +208,9 @@ void visit_follower_tangents(const Model& model, const Slots<T>& slots, const Bo
 
 }  // namespace detail
 
-/// Calls sink(nodes, K) for each side of an element that a pressure follows: derivatives of its forces by
-/// displacements, node-major. In plane stress it calls again with the part that the stretch of the thickness adds.
-template <class T, class Sink>
-void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, Sink&& sink) {
+template <class T>
+void for_each_follower_tangent(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at,
+                               const std::type_identity_t<ElementSink<T>>& sink) {
   with_dimension(model.dimension, [&]<int D>() { detail::visit_follower_tangents<D>(model, slots, at, sink); });
 }
 

@@ -1,4 +1,4 @@
-#include "core/mesh/grid.hpp"
+#include "core/mesh/structured.hpp"
 
 #include <algorithm>
 

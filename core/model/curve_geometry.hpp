@@ -1,0 +1,163 @@
+/// Geometry of contact points along master curves of the plane, node by node and over the segments of curves and of
+/// obstacles.
+#pragma once
+
+#include "core/model/placed_point.hpp"
+
+namespace stickslip::detail {
+
+/// Slots::arcs of a curve.
+template <class T>
+Vector<T> arcs_of(const Model& model, const MasterCurve& curve, const Slots<T>& slots) {
+  if (!curve.is_integrated()) return {};
+  Vector<T> arcs(static_cast<Eigen::Index>(curve.facets.size()) + 1);
+  arcs[0] = T(0);
+  for (std::size_t f = 0; f < curve.facets.size(); ++f) {
+    const auto end = [&](int k) { return start_of(model, curve.obstacle, slots, curve.facets[f][k]); };
+    arcs[f + 1] = arcs[f] + norm(Vec<T, 2>(end(1) - end(0)));
+  }
+  return arcs;
+}
+
+/// The facet of an integrated curve from which the arc lengths of a point are measured.
+inline int facet_of_arcs(const ContactPoint& point) { return std::max(point.facing.patch, 0); }
+
+/// Where a point is along its integrated curve at the start, from the beginning of facet_of_arcs(): that facet's line
+/// at its slave node. Arc lengths are measured from there, so that those of small motions are small.
+template <class T>
+double origin_of_arcs(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  const auto& curve = model.curves[point.curve];
+  const auto& facet = curve.facets[facet_of_arcs(point)];
+  const auto place = [&](int node) -> Vec<double, 2> { return values(start_of(model, curve.obstacle, slots, node)); };
+  const Vec<double, 2> c = place(facet[0]), tau = place(facet[1]) - c;
+  return (place(point.nodes[0]) - c).dot(tau) / tau.norm();
+}
+
+/// Initial arc length along an integrated curve from the beginning of facet_of_arcs() to that of a facet. `first`: a
+/// facet near it; on a closed curve the way to `first` is the shorter one.
+template <class T>
+T arc_to(const Model& model, const ContactPoint& point, const Slots<T>& slots, int first, int facet) {
+  const auto& curve = model.curves[point.curve];
+  const Vector<T>& arcs = slots.arcs[point.curve];
+  const int count = static_cast<int>(curve.facets.size()), origin = facet_of_arcs(point);
+  const auto way = [&](int from, int to) {
+    const bool is_longer = curve.is_loop() && 2 * std::abs(to - from) > count;
+    return to - from + (!is_longer ? 0 : to < from ? count : -count);
+  };
+  const int turns = (origin + way(origin, first) + way(first, facet) - facet) / count;
+  const T arc = arcs[facet] - arcs[origin];
+  return turns == 0 ? arc : T(arc + T(static_cast<double>(turns)) * arcs[count]);
+}
+
+/// Coordinate on a patch from which the foot of a point is measured: that of its foot at the start, and on the patch
+/// before this one its end. So a small motion makes a small difference, also across a vertex.
+inline double foot_reference(const Model& model, const ContactPoint& point, int patch) {
+  const Facing& start = point.facing;
+  if (patch == start.patch) return start.xi;
+  return start.patch != Patch::none && model.curves[point.curve].patches[start.patch].previous == patch ? 1 : 0;
+}
+
+/// Placement along its curve of a point that faces nothing of it, as History::foot stores it: from there it slides in
+/// the increment in which it comes to face the curve. It is the place of the patch `nearest` that is nearest to the
+/// slave node; for a segment-integrated point past a free end, where such a point comes on.
+template <class U, class T, class Displacement>
+U place_beside(const Positions<U, T, Displacement>& positions, const ContactPoint& point, int nearest) {
+  const Model& model = positions.model;
+  const Slots<T>& slots = positions.slots;
+  const auto& curve = model.curves[point.curve];
+  const auto& patch = curve.patches[nearest];
+  const U xi = beside_facet<U, T>(positions.slave(point), positions.vertex(curve, patch.vertices[1]),
+                                  positions.vertex(curve, patch.vertices[2]));
+  if (!curve.is_integrated()) return xi - U(foot_reference(model, point, nearest));
+  const auto of_start = [&](int node) { return start_of(model, point.obstacle, slots, node); };
+  const auto& facet = curve.facets[nearest];
+  const U place = U(arc_to(model, point, slots, nearest, nearest) - T(origin_of_arcs(model, point, slots))) +
+                  xi * U(norm(Vec<T, 2>(of_start(facet[1]) - of_start(facet[0]))));
+  if (value(xi) <= 0 && patch.previous == Patch::none)
+    return place - U(way_outside_of_end<T>(point.segments, 1, of_start));
+  if (value(xi) >= 1 && patch.next == Patch::none) return place + U(way_outside_of_end<T>(point.segments, 0, of_start));
+  return place;
+}
+
+/// Geometry of a point against its curve.
+template <class U, class T, class Displacement>
+PlacedPoint<U, 2> on_curve(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
+                           const Facing& facing, const Earlier<T>& earlier) {
+  const Model& model = positions.model;
+  const auto& curve = model.curves[point.curve];
+  const auto vertex = [&](int v) { return positions.vertex(curve, v); };
+  const Patch& patch = curve.patches[facing.patch];
+  PlacedPoint<U, 2> at;
+  const auto foot =
+      foot_on_patch<U, T>(patch, foot_reference(model, point, facing.patch), facing.xi, positions.slave(point), vertex);
+  at.geometry.gap = foot.gap + U(offset_of(point, model, positions.slots));
+  at.geometry.normal = foot.normal;
+  at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
+  at.geometry.weights = foot_weights(patch, foot.weights, curve.obstacle >= 0);
+  at.geometry.area = U(earlier.start ? earlier.start->area : whole_area(point, positions.slots));
+  at.foot[0] = foot.shift;
+  if (earlier.patch != Patch::none)
+    at.foot_motion = foot_motion<U, T>(patch, foot, curve.patches[earlier.patch],
+                                       foot_reference(model, point, earlier.patch), *earlier.foot, vertex);
+  return at;
+}
+
+/// Foot on an obstacle of a place of a segment, X displaced by u.
+template <class U, class Read>
+Foot<U> foot_on_obstacle(const RigidSurface& shape, const Vec<U, 2>& X, const Vec<U, 2>& u, const Read& numbers) {
+  const auto g = against_rigid<U>(X, u, shape, numbers);
+  Foot<U> foot;
+  for (int i = 0; i < 2; ++i) {
+    foot.normal[i] = g.normal[i];
+    foot.off[i] = g.gap * g.normal[i];
+    foot.moved[i] = u[i] - foot.off[i];
+  }
+  return foot;
+}
+
+/// Geometry of a segment-integrated point. `facing`: its segments along a curve; not read where it has none, as against
+/// an obstacle, in whose frame the integration is.
+template <class U, class T, class Displacement>
+PlacedPoint<U, 2> on_segments(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
+                              const Facing& facing, const Earlier<T>& earlier) {
+  const Model& model = positions.model;
+  const Slots<T>& slots = positions.slots;
+  const bool along_curve = point.curve >= 0;
+  const auto number = [&](const Number& n) { return U(slots.numbers(n)); };
+  const Frame<T, 2> frame =
+      along_curve || point.obstacle < 0 ? Frame<T, 2>{} : positions.template frame<2>(point.obstacle);
+  const auto place = [&](int node) {
+    auto at = positions.node(point.obstacle, node);
+    if (node < positions.model.node_count) at.moved = frame.seen(at.start, at.moved);
+    return at;
+  };
+  const auto rigid_foot = [&](const Vec<U, 2>& X, const Vec<U, 2>& u) {
+    return foot_on_obstacle<U>(model.scene.obstacles[point.obstacle].shape, X, u, number);
+  };
+  const double origin = along_curve ? origin_of_arcs(model, point, slots) : 0;
+  const auto begin = [&](int facet) {
+    return along_curve ? T(arc_to(model, point, slots, facing.patch, facet) - T(origin)) : T(0);
+  };
+  const auto& depth = slots.depths[point.slave_body];
+  auto kinematics = segment_kinematics<U, T>(
+      along_curve ? facing.pieces : point.segments, along_curve ? facing.nodes : point.nodes, place,
+      Depth<U>{depth.of_revolution, U(depth.thickness)}, rigid_foot, begin, !along_curve);
+  PlacedPoint<U, 2> at;
+  at.geometry = std::move(kinematics.geometry);
+  at.foot.template head<2>() = kinematics.foot;
+  if (earlier.foot && !along_curve) {
+    at.foot_motion = Vec<U, 2>(at.foot[0] - U(earlier.foot[0]), at.foot[1] - U(earlier.foot[1]));
+  } else if (earlier.patch != Patch::none) {
+    U length = at.foot[0] - U(earlier.foot[0]);
+    const Vector<T>& arcs = slots.arcs[point.curve];
+    const T& whole = arcs[arcs.size() - 1];
+    const double turns = model.curves[point.curve].is_loop() ? std::round(value(length) / value(whole)) : 0;
+    if (turns != 0) length -= U(turns) * U(whole);
+    for (int i = 0; i < 2; ++i) at.foot_motion[i] = kinematics.tangent[i] * length;
+  }
+  turn_with<U, T>(frame, at);
+  at.geometry.gap += number(model.scene.contacts[point.contact].offset);
+  return at;
+}
+
+}  // namespace stickslip::detail

@@ -1,0 +1,220 @@
+/// Definition of point_tangent(), by dual numbers through the kernel of the residual.
+#pragma once
+
+#include "core/model/contact_assembly_impl.hpp"
+#include "core/model/point_tangent.hpp"
+#include "core/model/stencil.hpp"
+
+namespace stickslip {
+
+namespace detail {
+
+/// The same geometry in the scalar U built on T, without weights.
+template <class U, class T>
+PointGeometry<U> promote(const PointGeometry<T>& g) {
+  PointGeometry<U> out;
+  auto cast = [](const T& x) { return U(x); };
+  out.gap = U(g.gap);
+  out.area = U(g.area);
+  out.normal = g.normal.unaryExpr(cast);
+  out.tangents = g.tangents.unaryExpr(cast);
+  return out;
+}
+
+/// The multiplier of a point, seeded by lambda / rho from direction `first` on.
+template <class Probe, class T, int Tangents>
+Traction<Probe, Tangents> seeded_multiplier(const ContactInput<T>& input, int p, const Vector<T>& multiplier,
+                                            int first) {
+  const auto lambda = gather_traction<T, Tangents>(multiplier, input.model.points[p].multiplier);
+  Traction<Probe, Tangents> seeded;
+  seeded.normal = Probe(lambda.normal);
+  seeded.normal.d[first] = input.rho[p].normal;
+  for (int a = 0; a < Tangents; ++a) {
+    seeded.tangential[a] = Probe(lambda.tangential[a]);
+    seeded.tangential[a].d[first + 1 + a] = input.rho[p].tangential;
+  }
+  return seeded;
+}
+
+/// Constant input of a point, in the dual scalar.
+template <class Probe, class T, int Tangents>
+struct FixedInput {
+  FixedInput(const ContactInput<T>& input, int p)
+      : rho{Probe(input.rho[p].normal), Probe(input.rho[p].tangential)},
+        friction(input.slots.friction[input.model.points[p].contact].template as<Probe>(
+            [](const T& number) { return Probe(number); })) {
+    const auto previous = previous_placement<T, Tangents>(input, p);
+    for (int a = 0; a < Tangents; ++a) placement[a] = Probe(previous[a]);
+  }
+  PointRegularisation<Probe> rho;
+  FrictionLaw<Probe> friction;
+  Vec<Probe, Tangents> placement;
+};
+
+/// Range of displacements seeded in one sweep, before the multipliers.
+struct Seeded {
+  int first, count;
+};
+
+/// Sets the derivatives of the rows A (t - lambda) by the seeded displacements and by multipliers. `area`: A.
+template <class T, class Probe, int Tangents>
+void take_rows(const Traction<Probe, Tangents>& traction, const Traction<Probe, Tangents>& lambda, const T& area,
+               Seeded seeded, PointTangent<T>& tangent) {
+  constexpr int C = 1 + Tangents;
+  for (int r = 0; r < C; ++r) {
+    const Probe row = r == 0 ? traction.normal - lambda.normal : traction.tangential[r - 1] - lambda.tangential[r - 1];
+    for (int j = 0; j < seeded.count; ++j) tangent.row_w(r, seeded.first + j) = area * row.d[j];
+    for (int c = 0; c < C; ++c) tangent.row_l(r, c) = area * row.d[seeded.count + c];
+  }
+}
+
+/// Indices in Model::contact_nodes of the columns of a tangent: of the nodes that the point touches, and along a curve
+/// of those that its last foot is on. The first `faced` of them also have forces.
+template <class T>
+std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Facing& facing, int& faced) {
+  const auto& point = input.model.points[p];
+  std::vector<int> places;
+  places.reserve(9);  // of the slave node and two patches
+  for_each_place(input.model, point, facing, [&](int place) { places.push_back(place); });
+  faced = static_cast<int>(places.size());
+  if (!point.segments.empty() || point.foot < 0) return places;
+  if (facing.patch != Patch::none || input.previous.faces[p])
+    for_each_place(input.model.curves[point.curve], input.previous.patch[p], [&](int place) {
+      if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
+    });
+  return places;
+}
+
+/// Whether the tangent of a point is by the displacements of all nodes that it touches.
+inline bool has_places(const Model& model, const ContactPoint& point) {
+  return (point.curve >= 0 || !point.segments.empty()) && model.effects.current_geometry;
+}
+
+/// Tangent of an open point: it bears nothing wherever it is, and its rows are -A lambda.
+template <class T>
+PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing& facing) {
+  const auto& point = input.model.points[p];
+  PointTangent<T> tangent;
+  int faced = 0, count = input.model.dimension;
+  if (has_places(input.model, point)) {
+    tangent.places = places_of_tangent(input, p, facing, faced);
+    count *= static_cast<int>(tangent.places.size());
+  }
+  const int components = point.components();
+  tangent.force_w = Matrix<T>::Constant(count, count, T(0));
+  tangent.force_l = Matrix<T>::Constant(count, components, T(0));
+  tangent.row_w = Matrix<T>::Constant(components, count, T(0));
+  tangent.row_l = Matrix<T>::Constant(components, components, T(0));
+  for (int c = 0; c < components; ++c)
+    tangent.row_l(c, c) = input.slots.geometry[p].area * -(c == 0 ? input.rho[p].normal : input.rho[p].tangential);
+  return tangent;
+}
+
+/// Tangent by the displacements of the nodes at the places `of`, of which the first `faced` have forces, `at_once` dofs
+/// in one sweep. `facing`: what the point faces of its curve.
+template <class T, int D, int Tangents, int at_once>
+PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing& facing, std::vector<int> of,
+                                  int faced, const Vector<T>& compact, const Vector<T>& multiplier,
+                                  ContactState state) {
+  constexpr int C = 1 + Tangents;
+  using Probe = Dual<at_once + C, T>;
+  PointTangent<T> tangent;
+  auto& places = tangent.places;
+  places = std::move(of);
+  const int count = static_cast<int>(D * places.size());
+  tangent.force_w = Matrix<T>::Constant(count, count, T(0));
+  tangent.force_l = Matrix<T>::Constant(count, C, T(0));
+  tangent.row_w.resize(C, count);
+  tangent.row_l.resize(C, C);
+  const FixedInput<Probe, T, Tangents> fixed_input(input, p);
+  for (int first = 0; first < count; first += at_once) {
+    const Seeded seeded{first, std::min(at_once, count - first)};
+    const auto displacement = [&](int place) {
+      const int k = D * static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin()) - first;
+      Vec<Probe, D> u;
+      for (int i = 0; i < D; ++i) {
+        u[i] = Probe(compact[D * place + i]);
+        if (k >= 0 && k < seeded.count) u[i].d[k + i] = T(1);
+      }
+      return u;
+    };
+    const Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement, input.time};
+    const auto at = place_point<D>(positions, input.model.points[p], facing, earlier(input, p));
+    const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, seeded.count);
+    const auto outcome = point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                              fixed_input.friction, 0, &state);
+    const Vec<Probe, D> force = point_force<Probe, D, Tangents>(at.geometry, outcome.traction);
+    for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
+      for (int i = 0; i < D; ++i) {
+        const Probe share = at.geometry.weights[n] * force[i];
+        for (int j = 0; j < seeded.count; ++j) tangent.force_w(D * n + i, first + j) = share.d[j];
+        for (int c = 0; c < C; ++c) tangent.force_l(D * n + i, c) = share.d[seeded.count + c];
+      }
+    take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, seeded, tangent);
+  }
+  return tangent;
+}
+
+}  // namespace detail
+
+template <class T>
+PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<T>& compact,
+                              const Vector<T>& multiplier, ContactState state, const std::vector<Facing>& facing) {
+  const auto& point = input.model.points[p];
+  const bool by_places = detail::has_places(input.model, point);
+  const Facing& found = by_places && point.curve >= 0 ? facing[p] : point.facing;
+  if (state == ContactState::open) return detail::open_tangent(input, p, found);
+  return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
+    if (by_places) {
+      // In the plane 18: the slave node and four vertices each of this patch and of the last; 12: where these are
+      // neighbours. In space 27: in two or three sweeps of the 17 nodes of a regular patch.
+      int faced = 0;
+      auto places = detail::places_of_tangent(input, p, found, faced);
+      const auto tangent = [&]<int at_once>() {
+        return detail::tangent_by_places<T, D, Tangents, at_once>(input, p, found, std::move(places), faced, compact,
+                                                                  multiplier, state);
+      };
+      if constexpr (D == 2)
+        return places.size() <= 6 ? tangent.template operator()<12>() : tangent.template operator()<18>();
+      else
+        return tangent.template operator()<27>();
+    }
+    constexpr int C = 1 + Tangents;
+    using Probe = Dual<D + C, T>;
+    const bool present = input.model.effects.current_geometry;
+    Vec<T, D> w_value;
+    if (present)
+      w_value = compact.template segment<D>(point.places[0] * D);
+    else
+      w_value = detail::relative_displacement<T, D>(input, p, compact);
+    Vec<Probe, D> w;
+    for (int i = 0; i < D; ++i) w[i] = Probe::seed(w_value[i], i);
+    const auto lambda = detail::seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, D);
+    const detail::FixedInput<Probe, T, Tangents> fixed_input(input, p);
+    PointOutcome<Probe, Tangents> outcome;
+    PointGeometry<Probe> geometry;
+    if (present) {
+      const auto displacement = [&](int) { return w; };
+      const detail::Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement,
+                                                                          input.time};
+      auto at = detail::on_obstacle<D>(positions, point, detail::earlier(input, p));
+      outcome = detail::point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                             fixed_input.friction, 0, &state);
+      geometry = std::move(at.geometry);
+    } else {
+      geometry = detail::promote<Probe>(input.slots.geometry[p]);
+      outcome = evaluate_point<Probe, D, Tangents>(geometry, w, lambda, fixed_input.placement, fixed_input.rho,
+                                                   fixed_input.friction, input.cone, 0, &state);
+    }
+    const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
+    PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
+    for (int i = 0; i < D; ++i) {
+      for (int j = 0; j < D; ++j) tangent.force_w(i, j) = force[i].d[j];
+      for (int c = 0; c < C; ++c) tangent.force_l(i, c) = force[i].d[D + c];
+    }
+    detail::take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, {0, D}, tangent);
+    return tangent;
+  });
+}
+
+}  // namespace stickslip
