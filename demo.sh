@@ -8,7 +8,7 @@ bash tools/install_dependencies.sh
 # shellcheck source=tools/environment.sh
 . tools/environment.sh
 
-echo "demo.sh: builds the program; from nothing this takes about 8 minutes on two cores"
+echo "demo.sh: builds the program; from nothing this takes 8 to 13 minutes on two cores"
 cmake --preset release -DSTICKSLIP_BUILD_TESTS=OFF -DSTICKSLIP_BUILD_BENCH=OFF
 cmake --build --preset release -j "$jobs"  # (all that `cmake --install` installs)
 

@@ -9,7 +9,7 @@ bash tools/check_format.sh
 # shellcheck source=tools/environment.sh
 . tools/environment.sh
 
-echo "test.sh: builds everything; from nothing this takes about twice as long as demo.sh, 18 minutes on two cores"
+echo "test.sh: builds everything; from nothing this takes about twice as long as demo.sh, 18 to 26 minutes on two cores"
 cmake --preset ci
 cmake --build --preset ci -j "$jobs"
 
