@@ -1,7 +1,6 @@
 /// The facets of a segment of segments.hpp: its slave facet with the points on it, and what they face of its master facet.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 
 #include "core/contact/placed.hpp"

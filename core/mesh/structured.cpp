@@ -5,6 +5,7 @@
 #include "core/mesh/sides.hpp"
 
 namespace stickslip {
+
 void append_block(Mesh& mesh, const std::array<int, 8>& n, const std::array<bool, 3>& mirrored) {
   if (mesh.shape == ElementShape::hex8) {
     mesh.connectivity.insert(mesh.connectivity.end(), n.begin(), n.end());

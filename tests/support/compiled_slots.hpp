@@ -1,5 +1,5 @@
-/// The slots and bodies in the scalars of tests, compiled once: complex numbers, in which the oracle runs; and the scalar
-/// of direct differentiation, as it is in the program.
+/// The slots, bodies and contact points in the scalars of tests, compiled once: complex numbers, in which the oracle
+/// runs; and the scalar of direct differentiation, as it is in the program.
 #pragma once
 
 #include <complex>
