@@ -160,12 +160,12 @@ TEST_F(PeerSolutions, ThatCannotBeReadAreFaultsOfTheStudy) {
   EXPECT_THAT(faults(study_with({good, good})), HasSubstr("/solutions/1/name: is \"Other\", which another"));
   json entry = good;
   entry["name"] = "penalty";
-  EXPECT_THAT(faults(study_with({entry})), HasSubstr("is the name of a method"));
+  EXPECT_THAT(faults(study_with(json::array({entry}))), HasSubstr("is the name of a method"));
   entry = good;
   entry["file"] = "none.json";
-  EXPECT_THAT(faults(study_with({entry})), HasSubstr("none.json: cannot be read"));
+  EXPECT_THAT(faults(study_with(json::array({entry}))), HasSubstr("none.json: cannot be read"));
   entry["file"] = "scene.json";
-  EXPECT_THAT(faults(study_with({entry})), HasSubstr(R"(must have "schema": "stickslip_solution")"));
+  EXPECT_THAT(faults(study_with(json::array({entry}))), HasSubstr(R"(must have "schema": "stickslip_solution")"));
   EXPECT_THAT(faults(study_with(json::object())), HasSubstr("/solutions: is {}; must be a list"));
 }
 

@@ -154,7 +154,7 @@ TEST_F(ReportHeadline, NamesWhatTheDiscretisationErrorIsAgainst) {
   for (const auto& [references, words] :
        {std::pair{json{method, closed}, "the closed form"}, std::pair{json{method, fine}, "the finer mesh"},
         std::pair{json{method, file}, "the common mesh (fine.msh, 1 level finer)"},
-        std::pair{json{given}, "the given values"}, std::pair{json{closed, fine}, "the references"}}) {
+        std::pair{json::array({given}), "the given values"}, std::pair{json{closed, fine}, "the references"}}) {
     study_json["reference"] = references;
     record(study_json, three_methods());
     EXPECT_EQ(report::discretization_reference(study()), words);
@@ -170,7 +170,7 @@ TEST_F(ReportHeadline, HeadlineSaysWhatTheDistanceFromAReferenceIs) {
   auto cells = three_methods();
   json told = description();
   const auto said = [&](const json& reference) {
-    told["reference"] = {reference};
+    told["reference"] = json::array({reference});
     record(told, cells);
     return all_of(report::headline(study()));
   };

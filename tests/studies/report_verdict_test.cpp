@@ -158,7 +158,7 @@ TEST_F(ReportVerdict, ShowsTheSpreadOfTimings) {
 TEST_F(ReportVerdict, SaysWhatBesidesTheMethodErrs) {
   json about = description();
   const auto verdict_against = [&](const json& reference) {
-    about["reference"] = {reference};
+    about["reference"] = json::array({reference});
     return verdict_of(about, three_methods());
   };
   EXPECT_THAT(verdict_against({{"overkill", {{"refine", 1}}}}), HasSubstr(">own error of mesh: <span>1 %</span>"));
