@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "core/contact/placed.hpp"
 #include "core/contact/segment.hpp"
@@ -30,14 +31,15 @@ Bulge<T, S> bulge_of(const std::array<int, 3>& edge, Position&& position) {
   return bulge;
 }
 
-/// Solves way = s straight + s (1 - s) bent for s, from the solution without `bent`. Newton steps double the digits, and
-/// in T carry its derivatives.
+/// Solves way = s straight + s (1 - s) bent for s: of the two solutions the one that is way / straight without `bent`.
+/// Two Newton steps in T from it, in numbers, carry its derivatives. Where the curve has turned back before it goes so
+/// far, nothing is there; then what goes on evenly.
 template <class T>
 T along_bulge(const T& way, const T& straight, const T& bent) {
-  constexpr int steps = 5;
-  T s = way / straight;
-  for (int k = 0; k < steps; ++k)
-    s += (way - s * straight - s * (T(1) - s) * bent) / (straight + (T(1) - T(2) * s) * bent);
+  const double slope = value(straight) + value(bent), square = slope * slope - 4 * value(bent) * value(way);
+  if (square <= 0) return T(2) * way / (straight + bent);
+  auto s = T(2 * value(way) / (slope + std::copysign(std::sqrt(square), slope)));
+  for (int k = 0; k < 2; ++k) s += (way - s * straight - s * (T(1) - s) * bent) / (straight + (T(1) - T(2) * s) * bent);
   return s;
 }
 

@@ -65,12 +65,27 @@ struct Evaluation {
 struct PointSizes {
   double area_times_rho = 0;                                 ///< largest A rho of a point that touches
   double distance = 0;                                       ///< largest initial gap of a closed point, length
+  double bulge = 0;                                          ///< largest bulge_at() of a closed point, length
   double tie = 0;                                            ///< largest tie_length() of a point that touches, length
   double tie_force = 0;                                      ///< largest force that it makes of the body, k times it
   double elastic = 0;                                        ///< largest k / A
   double rho = 0;                                            ///< largest rho
   double softest = std::numeric_limits<double>::infinity();  ///< least k
 };
+
+/// How far the sides of quadratic elements that a point is on, or faces, bulge from straight ones at the start: its gap
+/// is a difference of such lengths.
+template <class T>
+double bulge_at(const ContactInput<T>& input, const ContactField<T>& field, std::size_t p) {
+  if (p >= field.facing.size()) return 0;
+  const auto start = [&](int node) { return values(input.slots.points.col(node)); };
+  double largest = 0;
+  for (const auto& segment : field.facing[p].pieces)
+    for (const auto& side : {segment.slave_edge, segment.master_edge})
+      if (side[2] != Segment::none)
+        largest = std::max(largest, (start(side[2]) - (start(side[0]) + start(side[1])) / 2).norm());
+  return largest;
+}
 
 /// Raises the scales of length and traction to those of a field, and returns the extreme values of its points.
 template <class T>
@@ -91,7 +106,10 @@ PointSizes measure_points(const ContactInput<T>& input, const ContactField<T>& f
     const bool is_closed = field.state[p] != ContactState::open;
     if (is_closed || value(field.gap[p]) <= tie)  // (the gap of others makes no force)
       sizes.area_times_rho = std::max(sizes.area_times_rho, area * value(input.rho[p].normal));
-    if (is_closed) sizes.distance = std::max(sizes.distance, std::abs(value(input.slots.geometry[p].gap)));
+    if (is_closed) {
+      sizes.distance = std::max(sizes.distance, std::abs(value(input.slots.geometry[p].gap)));
+      sizes.bulge = std::max(sizes.bulge, bulge_at(input, field, p));
+    }
     if (value(field.gap[p]) <= tie) {
       sizes.tie = std::max(sizes.tie, tie);
       sizes.tie_force = std::max(sizes.tie_force, stiffness * tie);
@@ -126,16 +144,16 @@ inline void set_floors(const PointSizes& sizes, const RunScales& scales, double 
   // Such a body drifts off on a nearly singular tangent, and has no equilibrium that rounding hides. Exceptions:
   // supports prescribe a tenth of that motion, or a softer body yields that far under 1e3 times its force.
   constexpr double adrift = 1e-5, carried = 10, yielded = 1e3;
-  const double bulk_floor = rounding_factor * ratio(rounding, scales.force);
+  const double bulk_floor = rounding_factor * ratio(rounding, scales.force),
+               in_gap = std::max(magnitudes.relative, sizes.bulge);
   if (bulk_floor <= adrift || magnitudes.displacement <= carried * magnitudes.prescribed ||
       sizes.softest * magnitudes.displacement <= yielded * scales.force)
     residuals.floor_equilibrium =
         bulk_floor +
-        rounding_factor *
-            ratio(unit_roundoff * sizes.area_times_rho * std::max(magnitudes.relative, sizes.distance), scales.force);
-  residuals.floor_length = rounding_factor * ratio(unit_roundoff * magnitudes.relative, scales.length);
+        rounding_factor * ratio(unit_roundoff * sizes.area_times_rho * std::max(in_gap, sizes.distance), scales.force);
+  residuals.floor_length = rounding_factor * ratio(unit_roundoff * in_gap, scales.length);
   // In slip the bound turns the rounding of the pressure lambda_N + rho g_N into one of the tangential traction.
-  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * magnitudes.relative, scales.traction);
+  residuals.floor_traction = rounding_factor * ratio(unit_roundoff * sizes.rho * in_gap, scales.traction);
 }
 
 /// Sets the normal and tangential residuals from t - lambda. `largest_displacement`: of a contact node, length.

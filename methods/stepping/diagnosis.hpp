@@ -101,6 +101,39 @@ std::string words_of_inversion(const Model& model, const Slots<T>& slots, const 
   return "";
 }
 
+/// A pressed side of a quadratic element that is folded, in words; empty if there is none. Its middle node is then
+/// nearer to an end than a quarter of the way, where the side runs back over itself: what faces what there is not
+/// determined.
+template <class T>
+std::string words_of_folded_side(const Model& model, const Slots<T>& slots, const State<T>& state) {
+  if constexpr (std::is_same_v<T, double>) {
+    if (!model.slides_along_curves()) return "";
+    const auto now = [&](int node) -> Vec<double, 2> {
+      return slots.points.col(node).template head<2>() + state.displacement.template segment<2>(2 * node);
+    };
+    const auto is_folded = [&](const std::array<int, 3>& side) {
+      if (side[2] == Segment::none) return false;
+      const Vec<double, 2> a = now(side[0]), b = now(side[1]), middle = now(side[2]);
+      return 2 * std::abs(((middle - a) + (middle - b)).dot(b - a)) >= (b - a).squaredNorm();
+    };
+    for (std::size_t p = 0; p < model.points.size(); ++p) {
+      if (state.contact.state[p] == ContactState::open) continue;
+      for (const auto& segment : state.contact.facing[p].pieces)
+        for (const auto& side : {segment.slave_edge, segment.master_edge})
+          if (is_folded(side)) {
+            std::size_t b = 0;
+            while (!nodes_of_body(model, b).has(side[2])) ++b;
+            const Vec<double, 2> at = slots.points.col(side[2]).template head<2>();
+            return "a pressed side of " + model.scene.bodies[b].name + " is folded: its middle node, " +
+                   in_words(at, at.norm()) +
+                   " at the start, is nearer to one end than a quarter of the way; take more steps, a finer mesh "
+                   "there, a smaller motion, or elements with straight sides";
+          }
+    }
+  }
+  return "";
+}
+
 /// The body whose load no forces balance, and its free motion, in words; empty if there is none.
 template <class T>
 std::string words_of_imbalance(const Model& model, const Slots<T>& slots, double time, const State<T>& at) {
@@ -136,11 +169,13 @@ std::string words_of_flow(const Model& model, const Slots<T>& slots, const State
 template <class T>
 void name_failure(const Model& model, const Slots<T>& slots, double time, bool prevents_penetration,
                   Increment<T>& failed) {
-  if (const std::string inverted = detail::words_of_inversion(model, slots, failed.state); !inverted.empty()) {
-    failed.status = Status::inverted_element;
-    failed.message = inverted;
-    return;
-  }
+  for (const auto& words :
+       {words_of_inversion(model, slots, failed.state), words_of_folded_side(model, slots, failed.state)})
+    if (!words.empty()) {
+      failed.status = Status::inverted_element;
+      failed.message = words;
+      return;
+    }
   if (const std::string driven_in = prescribed_overlap(model, slots, time, prevents_penetration, failed.state);
       !driven_in.empty()) {
     failed.status = Status::infeasible;

@@ -132,6 +132,16 @@ void refuse_infinite(Increment<T>& increment) {
   increment.message = "the displacements are not finite";
 }
 
+/// A state that presses on what is folded is no solution. (What it faces there is not determined.)
+template <class T>
+void refuse_folded(const Run<T>& run, Increment<T>& increment) {
+  if (!increment.usable()) return;
+  std::string words = detail::words_of_folded_side(run.model, run.slots, increment.state);
+  if (words.empty()) return;
+  increment.status = Status::inverted_element;
+  increment.message = std::move(words);
+}
+
 /// Whether an increment failed for a reason that is the same however short it is.
 template <class T>
 bool no_smaller_step_helps(const Run<T>& run, double start, double end, const Increment<T>& failed) {
@@ -145,7 +155,8 @@ void give_up(const Run<T>& run, double target, const WorkBound& bound, Increment
              std::vector<Increment<T>>& increments) {
   diagnose(run.model, run.slots, target, prevents_penetration(run.method), failed);
   const auto add = [&](const std::string& words) { failed.message += (failed.message.empty() ? "" : "; ") + words; };
-  const bool is_named = failed.status == Status::no_equilibrium || failed.status == Status::infeasible;
+  const bool is_named = failed.status == Status::no_equilibrium || failed.status == Status::infeasible ||
+                        failed.status == Status::inverted_element;
   if (!run.free.words.empty() && !is_named) add("where the step begins, " + run.free.words);
   if (bound.is_spent() && !is_named) add(bound.in_words());
   if (!is_named && has_abrupt_friction(run.model, run.slots)) add(abrupt_friction_message);
@@ -202,6 +213,7 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
     increment.requested = last;
     increment.cutbacks = cutbacks;
     refuse_infinite(increment);
+    refuse_folded(run, increment);
     const int before = increments.empty() ? 0 : increments.back().unresisted;
     increment.unresisted = may_cut ? motions_unresisted(run, previous, increment).value_or(before) : before;
     const bool passes = increment.usable() && increment.unresisted - before > (buckles ? 0 : 1) && !bound.is_spent() &&

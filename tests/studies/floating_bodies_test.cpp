@@ -150,7 +150,7 @@ TEST(AFloatingBody, IsPushedAlongByWhatTouchesIt) {
     const auto& body = result.problem->model.bodies[1];
     const auto of_tube =
         result.steps.back().increment->state.displacement.segment(2 * body.first_node, 2 * body.mesh.node_count);
-    EXPECT_LE(of_tube.minCoeff(), -0.033) << method;               // its top is out of the block's way
+    EXPECT_LE(of_tube.reshaped(2, body.mesh.node_count).row(1).mean(), -0.033) << method;  // out of the block's way
     EXPECT_LT(result.trajectory.counters.newton, 3000) << method;  // penalty 757, monolithic 867, Uzawa 1263
   }
 }

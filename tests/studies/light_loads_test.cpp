@@ -105,5 +105,41 @@ INSTANTIATE_TEST_SUITE_P(Floors, LightLoads,
                                   (std::get<1>(info.param) ? "_with_friction" : "");
                          });
 
+/// A ring in a ring whose inner side is one of quadratic elements, which bulge by 0.015, with an overlap of 7e-5 and of
+/// 7e-7: the gap is a difference of bulges, and its rounding, not the overlap, says when Newton's method is done.
+TEST(CurvedSides, ThatOverlapByLittleAreSolvedToTheRoundingOfTheirBulges) {
+  const auto ring = [](double inner, double outer, int around) -> json {
+    return {{"ring", {{"center", {0, 0}}, {"inner", inner}, {"outer", outer}, {"cells", {3, around}}}}};
+  };
+  const json rubber = {{"neo_hookean", {{"E", E}, {"nu", 0.3}}}};
+  for (const double overlap : {7e-5, 7e-7}) {
+    const double touching = 1.7056022614136969;  // where the means of the gaps of 27 straight sides and 24 curved are 0
+    const json s = {
+        {"space", "plane_strain"},
+        {"strain", "finite"},
+        {"bodies",
+         {{"a", {{"mesh", ring(0.76, 1.7133050301632236, 27)}, {"material", rubber}}},
+          {"b", {{"mesh", ring(touching - overlap, 2.5, 24)}, {"material", rubber}, {"element", "T6"}}}}},
+        {"contacts", {{"c", {{"slave", "a.outer"}, {"master", "b.inner"}, {"friction", 0.2}}}}},
+        {"supports",
+         {{{"on", "b.outer"}, {"move", {{"x", 0}, {"y", 0}}}}, {{"on", "a.inner"}, {"move", {{"x", 0}, {"y", 0}}}}}},
+        {"time", {{"end", 1}, {"steps", 1}}},
+        {"responses", {{"press", {{"contact_force", {{"contact", "c"}, {"component", "normal"}}}}}}}};
+    std::vector<double> press;
+    for (const json& method : methods) {
+      auto result = cases::run(s, method, "rings.json");
+      check_accuracy(result.problem->model, result.problem->slots, result.method, result.trajectory);
+      ASSERT_TRUE(is_converged(result.trajectory.status)) << method << overlap << ": " << result.trajectory.message;
+      EXPECT_LE(result.trajectory.counters.newton, 25) << method << overlap;
+      press.push_back(result.steps.back().responses[0]);
+    }
+    EXPECT_GT(press[2], 0);
+    // a few roundings of the bulges, of the overlap; the springs yield by 1e-3 of the rings
+    const double rounding = 100 * unit_roundoff * 0.015 / overlap;
+    EXPECT_NEAR(press[1], press[2], (1e-9 + rounding) * press[2]) << overlap;
+    EXPECT_NEAR(press[0], press[2], 2e-3 * press[2]) << overlap;
+  }
+}
+
 }  // namespace
 }  // namespace stickslip::light_loads

@@ -1,0 +1,39 @@
+/// Places along the curved facets of quadratic sides.
+#include "core/contact/segment_facets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/algebra/scalar.hpp"
+
+namespace stickslip::segment_facets_test {
+namespace {
+
+/// Both ways along it, from nearly folded at one end to nearly folded at the other: the place with its derivatives, as
+/// exact as rounding and its condition permit.
+TEST(AlongBulge, FindsThePlaceHoweverUnevenTheSideIs) {
+  for (const double straight : {0.37, -0.37})
+    for (const double share : {-0.98, -0.6, -0.1, 0.0, 0.3, 0.9, 0.98})
+      for (double s = 0; s <= 1; s += 1.0 / 64) {
+        const double bent = share * straight, way = s * straight + s * (1 - s) * bent;
+        const double slope = straight + (1 - 2 * s) * bent;
+        const auto found =
+            detail::along_bulge(Dual<3>::seed(way, 0), Dual<3>::seed(straight, 1), Dual<3>::seed(bent, 2));
+        const double rounding = 1e-15 * std::abs(straight / slope);  // a few in way, times what a place moves by it
+        EXPECT_NEAR(found.v, s, rounding) << straight << share;
+        EXPECT_NEAR(found.d[0] * slope, 1, 10 * rounding * std::abs(straight / slope)) << straight << share << s;
+        EXPECT_NEAR(found.d[1] * slope, -s, 10 * rounding * std::abs(straight / slope)) << straight << share << s;
+        EXPECT_NEAR(found.d[2] * slope, -s * (1 - s), 10 * rounding * std::abs(straight / slope)) << share << s;
+      }
+}
+
+/// Beyond where a folded side turns back there is no place: what is found goes on evenly with the way.
+TEST(AlongBulge, IsFiniteWhereTheSideDoesNotReach) {
+  const double far = detail::along_bulge<double>(3.0, 1.0, 2.0), farther = detail::along_bulge<double>(6.0, 1.0, 2.0);
+  EXPECT_TRUE(std::isfinite(far));
+  EXPECT_DOUBLE_EQ(farther, 2 * far);
+}
+
+}  // namespace
+}  // namespace stickslip::segment_facets_test
