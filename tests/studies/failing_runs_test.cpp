@@ -212,5 +212,17 @@ TEST(FrictionThatEndsAtOnce, IsNamedWhereThereIsNoEquilibrium) {
   }
 }
 
+/// Friction draws a slab along until the middle of a side is within a quarter of the side of one of its ends, though no
+/// integration point sees it. The steps before are solved.
+TEST(AFoldedSide, IsNamedAndNoSolution) {
+  const std::string file = STICKSLIP_SOURCE_DIR "/studies/hard/slab-folds-under-a-dragged-die.json";
+  const auto result = cases::run(cases::load(file), {{"monolithic_al", json::object()}}, file);
+  EXPECT_EQ(result.status(), Status::inverted_element);
+  EXPECT_THAT(result.message(), testing::StartsWith("a pressed side of slab is folded: its middle node, ("));
+  EXPECT_THAT(result.message(), testing::Not(HasSubstr("given up after")));
+  ASSERT_GE(result.steps.size(), 7u);
+  EXPECT_TRUE(result.steps[6].increment->usable());
+}
+
 }  // namespace
 }  // namespace stickslip::failing_runs
