@@ -135,7 +135,7 @@ class Contact {
     return seen;
   }
 
-  /// Cuts a slave facet where master facets end, seen along its normal; each part faces the nearest of them. What is
+  /// Cuts a slave facet where what it faces changes: of master facets, seen along its normal, the nearest. What is
   /// beyond the other face of a solid is inside of none of its faces.
   std::vector<Part> cut(const Facet& facet, const Field& x) const {
     if (master_.patches.empty()) return {{-1, 0, 1}};
@@ -163,7 +163,11 @@ class Contact {
         is_inside = depth > 0;
       }
       const bool is_beyond = is_inside && least_inside < least;
-      if (piece.patch >= 0 && !is_beyond && *to - from > at_end) pieces.push_back(piece);
+      if (piece.patch < 0 || is_beyond || *to - from <= at_end) continue;
+      if (!pieces.empty() && pieces.back().patch == piece.patch && pieces.back().to == from)
+        pieces.back().to = *to;  // what ends there is behind it
+      else
+        pieces.push_back(piece);
     }
     return pieces;
   }

@@ -210,7 +210,8 @@ struct Facet {
   /// Where (y - x(s)) . tau = 0. A bend moves no place over an end.
   double met(const Field& x, const Vec3& y, const Vec3& tau) const {
     double s = (y - x.col(ends[0])).dot(tau) / chord(x).dot(tau);
-    for (int k = 0; k < 20 && !edge.empty() && s > 0 && s < 1; ++k) s += (y - at(x, s)).dot(tau) / at(x, s, 1).dot(tau);
+    const bool bends = !edge.empty() && s > 0 && s < 1;
+    for (int k = 0; k < 20 && bends; ++k) s += (y - at(x, s)).dot(tau) / at(x, s, 1).dot(tau);
     return s;
   }
 };

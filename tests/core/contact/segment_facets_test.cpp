@@ -28,6 +28,19 @@ TEST(AlongBulge, FindsThePlaceHoweverUnevenTheSideIs) {
       }
 }
 
+/// Of a side that turns back before its first end or its second, as seen along the slave's normal, the part that runs
+/// on: there the way grows as it does on the straight side.
+TEST(AlongBulge, FindsThePartThatRunsOn) {
+  for (const double straight : {0.37, -0.37})
+    for (const double share : {-3.0, -1.5, 1.5, 3.0})
+      for (double s = 0; s <= 1; s += 1.0 / 64) {
+        const double bent = share * straight, growth = 1 + (1 - 2 * s) * share;
+        if (growth < 0.05) continue;  // (runs back, or is about to)
+        const double way = s * straight + s * (1 - s) * bent;
+        EXPECT_NEAR(detail::along_bulge<double>(way, straight, bent), s, 1e-14 / growth) << straight << share;
+      }
+}
+
 /// Beyond where a folded side turns back there is no place: what is found goes on evenly with the way.
 TEST(AlongBulge, IsFiniteWhereTheSideDoesNotReach) {
   const double far = detail::along_bulge<double>(3.0, 1.0, 2.0), farther = detail::along_bulge<double>(6.0, 1.0, 2.0);
