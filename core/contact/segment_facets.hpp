@@ -33,11 +33,11 @@ Bulge<T, S> bulge_of(const std::array<int, 3>& edge, Position&& position) {
 
 /// Solves way = s straight + s (1 - s) bent for s: of the two solutions that at which way grows as it does without
 /// `bent`. Two Newton steps in T from it, in numbers, carry its derivatives. Where the curve turns back before it goes
-/// so far, nothing is there; then what goes on evenly.
+/// so far, nothing is there; then the place on the straight facet.
 template <class T>
 T along_bulge(const T& way, const T& straight, const T& bent) {
   const double slope = value(straight) + value(bent), square = slope * slope - 4 * value(bent) * value(way);
-  if (square <= 0) return T(2) * way / (straight + bent);
+  if (square <= 0) return way / straight;
   const double root = std::copysign(std::sqrt(square), value(straight));  // the slope there
   const bool alike = slope == 0 || (slope > 0) == (root > 0);             // (else it would cancel)
   auto s = T(alike ? 2 * value(way) / (slope + root) : (slope - root) / (2 * value(bent)));

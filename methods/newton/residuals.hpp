@@ -6,6 +6,7 @@
 ///   tangential    stick: |dg_T|, over the same; open and slip: |t - lambda|, over the largest traction
 #pragma once
 
+#include "core/contact/segment_facets.hpp"
 #include "core/model/contact_assembly.hpp"
 #include "core/model/facings.hpp"
 #include "core/model/loading.hpp"
@@ -73,17 +74,18 @@ struct PointSizes {
   double softest = std::numeric_limits<double>::infinity();  ///< least k
 };
 
-/// How far the sides of quadratic elements that a point is on, or faces, bulge from straight ones at the start: its gap
-/// is a difference of such lengths.
+/// How far the sides of quadratic elements that a point is on, or faces, bulge from straight ones at the start, length:
+/// its gap is a difference of such lengths.
 template <class T>
 double bulge_at(const ContactInput<T>& input, const ContactField<T>& field, std::size_t p) {
   if (p >= field.facing.size()) return 0;
-  const auto start = [&](int node) { return values(input.slots.points.col(node)); };
+  const auto start = [&](int node) {
+    return at_start<double>(values(input.slots.points.col(node)).template head<2>());
+  };
   double largest = 0;
   for (const auto& segment : field.facing[p].pieces)
     for (const auto& side : {segment.slave_edge, segment.master_edge})
-      if (side[2] != Segment::none)
-        largest = std::max(largest, (start(side[2]) - (start(side[0]) + start(side[1])) / 2).norm());
+      largest = std::max(largest, detail::bulge_of<double, double>(side, start).start.norm());
   return largest;
 }
 

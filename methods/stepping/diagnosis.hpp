@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/contact/segment_facets.hpp"
 #include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
 #include "core/model/state.hpp"
@@ -101,37 +102,39 @@ std::string words_of_inversion(const Model& model, const Slots<T>& slots, const 
   return "";
 }
 
-/// A pressed side of a quadratic element that is folded, in words; empty if there is none. Its middle node is then
-/// nearer to an end than a quarter of the way, where the side runs back over itself: what faces what there is not
-/// determined.
+/// The middle node of a side of a quadratic element that is pressed and folded; Segment::none if there is none. With
+/// d of core/contact/segments.hpp the side runs back over itself before an end if 4 |d . (x_b - x_a)| >= |x_b - x_a|^2:
+/// its middle node is then nearer to that end than a quarter of the way. What faces what there is not determined.
+template <class T>
+int folded_middle(const Model& model, const Slots<T>& slots, const State<T>& state) {
+  const auto now = [&](int node) -> Placed<double> {
+    return {values(slots.points.col(node)).template head<2>(),
+            values(state.displacement.template segment<2>(2 * node))};
+  };
+  const auto is_folded = [&](const std::array<int, 3>& side) {
+    const auto bulge = bulge_of<double, double>(side, now);
+    if (!bulge.is_curved) return false;
+    const Vec<double, 2> line = now(side[1]) - now(side[0]);
+    return 4 * std::abs(bulge.now().dot(line)) >= line.squaredNorm();
+  };
+  for (std::size_t p = 0; model.slides_along_curves() && p < state.contact.facing.size(); ++p)
+    for (const auto& segment : state.contact.facing[p].pieces)
+      for (const auto& side : {segment.slave_edge, segment.master_edge})
+        if (state.contact.state[p] != ContactState::open && is_folded(side)) return side[2];
+  return Segment::none;
+}
+
+/// What folded_middle() finds, in words; empty if there is none.
 template <class T>
 std::string words_of_folded_side(const Model& model, const Slots<T>& slots, const State<T>& state) {
-  if constexpr (std::is_same_v<T, double>) {
-    if (!model.slides_along_curves()) return "";
-    const auto now = [&](int node) -> Vec<double, 2> {
-      return slots.points.col(node).template head<2>() + state.displacement.template segment<2>(2 * node);
-    };
-    const auto is_folded = [&](const std::array<int, 3>& side) {
-      if (side[2] == Segment::none) return false;
-      const Vec<double, 2> a = now(side[0]), b = now(side[1]), middle = now(side[2]);
-      return 2 * std::abs(((middle - a) + (middle - b)).dot(b - a)) >= (b - a).squaredNorm();
-    };
-    for (std::size_t p = 0; p < model.points.size(); ++p) {
-      if (state.contact.state[p] == ContactState::open) continue;
-      for (const auto& segment : state.contact.facing[p].pieces)
-        for (const auto& side : {segment.slave_edge, segment.master_edge})
-          if (is_folded(side)) {
-            std::size_t b = 0;
-            while (!nodes_of_body(model, b).has(side[2])) ++b;
-            const Vec<double, 2> at = slots.points.col(side[2]).template head<2>();
-            return "a pressed side of " + model.scene.bodies[b].name + " is folded: its middle node, " +
-                   in_words(at, at.norm()) +
-                   " at the start, is nearer to one end than a quarter of the way; take more steps, a finer mesh "
-                   "there, a smaller motion, or elements with straight sides";
-          }
-    }
-  }
-  return "";
+  const int node = folded_middle(model, slots, state);
+  if (node == Segment::none) return "";
+  std::size_t b = 0;
+  while (!nodes_of_body(model, b).has(node)) ++b;
+  const Vec<double, 2> at = values(slots.points.col(node)).template head<2>();
+  return "a pressed side of " + model.scene.bodies[b].name + " is folded: its middle node, " + in_words(at, at.norm()) +
+         " at the start, is nearer to one end than a quarter of the way; take more steps, a finer mesh there, a "
+         "smaller motion, or elements with straight sides";
 }
 
 /// The body whose load no forces balance, and its free motion, in words; empty if there is none.

@@ -123,23 +123,20 @@ bool drives_together(const Run<T>& run, double start, double end, const Incremen
   return cross_between(model, slots, start, end);
 }
 
-/// Displacements that are not finite are no solution. (An engine may eliminate dofs that no residual contains.)
+/// Displacements that are not finite are no solution. (An engine may eliminate dofs that no residual contains.) Nor is a
+/// state that presses on a folded side.
 template <class T>
-void refuse_infinite(Increment<T>& increment) {
-  if (!increment.usable() || increment.state.displacement.allFinite()) return;
-  increment.status = Status::not_finite;
-  increment.cut_off = false;
-  increment.message = "the displacements are not finite";
-}
-
-/// A state that presses on what is folded is no solution. (What it faces there is not determined.)
-template <class T>
-void refuse_folded(const Run<T>& run, Increment<T>& increment) {
+void refuse(const Run<T>& run, Increment<T>& increment) {
   if (!increment.usable()) return;
+  const auto mark = [&](Status status, std::string words) {
+    increment.status = status;
+    increment.cut_off = false;
+    increment.message = std::move(words);
+  };
+  if (!increment.state.displacement.allFinite()) return mark(Status::not_finite, "the displacements are not finite");
   std::string words = detail::words_of_folded_side(run.model, run.slots, increment.state);
   if (words.empty()) return;
-  increment.status = Status::inverted_element;
-  increment.message = std::move(words);
+  mark(Status::inverted_element, std::move(words));
 }
 
 /// Whether an increment failed for a reason that is the same however short it is.
@@ -212,8 +209,7 @@ bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut
     increment.time = next;
     increment.requested = last;
     increment.cutbacks = cutbacks;
-    refuse_infinite(increment);
-    refuse_folded(run, increment);
+    refuse(run, increment);
     const int before = increments.empty() ? 0 : increments.back().unresisted;
     increment.unresisted = may_cut ? motions_unresisted(run, previous, increment).value_or(before) : before;
     const bool passes = increment.usable() && increment.unresisted - before > (buckles ? 0 : 1) && !bound.is_spent() &&

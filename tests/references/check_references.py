@@ -3,8 +3,8 @@ those of seconds. One line a check.
 
 Closed forms and published numbers of the scenes, derivatives against differences of the whole path with free states,
 all combinations of states tried one by one where there are few points, and the stored solutions, solved anew.
-`check_references.py faults` plants an error at a time in the two solvers; the parts of seconds, at finite strain the long ones too, must see
-each.
+`check_references.py faults` plants an error at a time in the two solvers; the parts of seconds, and those of LONG_FINITE,
+must see each.
 """
 
 import itertools
@@ -592,7 +592,7 @@ FINITE_FAULTS = {
 
 
 def faults(which=None):
-    """Each fault in a copy of its file: the parts of seconds must fail there."""
+    """Each fault in a copy of its file: a part of QUICK must fail there, or of FINITE and LONG_FINITE."""
     for module, planted, parts in (("contact_reference", FAULTS, QUICK),
                                    ("finite_reference", FINITE_FAULTS, FINITE + LONG_FINITE)):
         if which and module != which:
@@ -623,7 +623,6 @@ FINITE = ("press_fit", "curves", "finite_uniform", "finite_balance", "vertex")
 LONG_FINITE = ("finite_thin", "finite_stored", "finite_derivatives")
 QUICK = ("stop", "uniform", "balance", "inequalities", "bar", "capstan", "enumeration", "few_derivatives", "slider",
          "tractrix", "stored") + FINITE
-SLOW = ("greco", "slow_tractrix", "derivatives", "slow_stored", "slow_finite_derivatives", "slow_finite_stored")
 
 
 def run(parts, until_one_fails=False):

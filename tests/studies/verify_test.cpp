@@ -238,6 +238,12 @@ TEST(Verify, HoldsForEachSurfaceAndDiscretization) {
   }
 }
 
+/// Bent sides are integrated over what faces one facet, whatever ends behind that.
+TEST(Verify, HoldsWhereAnotherWallIsBehindTheMaster) {
+  for (const auto& method : {"penalty", "uzawa_al", "monolithic_al"})
+    expect_holds(solve(cases::load(STICKSLIP_SOURCE_DIR "/studies/hard/another-wall-behind-the-floor.json"), method));
+}
+
 /// A bar that bends aside: of its nodes some may touch another part of it, none does, and some may touch nothing.
 TEST(Verify, HoldsForTheGapOfASideThatDoesNotTouchItself) {
   json bar = json::parse(R"({
