@@ -4,8 +4,8 @@
 ///   repeat  solve  R(u) = f_int - f_ext + sum A t dg = 0,   t = P_mu(lambda + rho g)     (lambda fixed)
 ///           lambda <- t                                                                  (AugmentationLoop::update)
 ///
-///   rho           scale, force per length cubed. With `adapt`, rho of a point grows fourfold if an augmentation leaves
-///                 more than 1/4 of its violation
+///   rho           scale, force per length cubed. With `adapt`, rho of a point grows where its violation falls slowly
+///                 (augmentation/adaption.hpp)
 ///   acceleration  lambda <- an extrapolation of the last t, put back onto the cone (augmentation/acceleration.hpp)
 ///   cone          augmented: radius -mu z_N; the tangent of slip is unsymmetric
 ///                 frozen: radius -mu lambda_N of the last augmentation; the tangent is symmetric. The radius is then a
@@ -24,6 +24,7 @@
 #pragma once
 
 #include "methods/augmentation/augmentation_status.hpp"
+#include "methods/augmentation/projection.hpp"
 
 namespace stickslip {
 
@@ -89,29 +90,18 @@ class AugmentationLoop {
     return equilibrium;
   }
 
-  /// Whether the increment ends with this inner solve, as converged or as failed. If so, its status and message are
-  /// set.
+  /// Whether the increment ends with this inner solve. If so, its status and message are set.
   bool ends_with(const ContactInput<T>& input, const Equilibrium<T>& equilibrium) {
     if (truncated_ && run_.model.effects.sensitivity)
       increment_.augmented.push_back(
           {settle(run_, input, equilibrium.unknowns, equilibrium.field), increment_.rho_factor});
-    const double largest_displacement =
-        largest_nodal_norm(run_.engine.compact(equilibrium.unknowns.u), run_.model.dimension);
-    const double first = equilibrium.history.front().residual, rest = equilibrium.history.back().residual;
-    const double noise = equilibrium.status == Status::converged_at_roundoff
-                             ? equilibrium.history.back().equilibrium * run_.account.scales.force
-                             : 0;
-    progress_.record(unknowns_.multiplier, equilibrium.field, largest_displacement, first > 0 ? rest / first : 0);
+    status_ = judge(method_, run_, input, unknowns_, equilibrium, progress_);
     increment_.contraction = progress_.contraction();
-    status_ = augmentation_status(method_, run_.slots, input.rho, largest_displacement, noise, run_.account.scales,
-                                  progress_);
     // A state that needs no inner solve is solved if its violation is: of one state no contraction is known, and where
     // a body is free the next inner solve is singular.
     const bool unmoved = start_.at_rest && increment_.augmentations == 1 && equilibrium.iterations == 0;
     status_.done |= unmoved && progress_.violation() <= status_.negligible;
-    times_within_ = status_.within_tolerance && !equilibrium.inexact ? times_within_ + 1 : 0;
     inexact_ &= !status_.within_tolerance;
-    status_.done |= times_within_ >= patience_at_ties;  // only states at a tie still change
     const bool at_limit = increment_.augmentations >= limit_;
     conclude(status_, at_limit, increment_);
     const bool over = status_.done && !equilibrium.inexact;
@@ -132,12 +122,11 @@ class AugmentationLoop {
     resumed_ = {};
     const auto cones = [&](Vector<T> x) { return projected_multiplier(run_.model, run_.slots, std::move(x)); };
     const Vector<T>& traction = equilibrium.field.traction;
-    unknowns_.u = equilibrium.unknowns.u;
-    unknowns_.time = equilibrium.unknowns.time;
-    unknowns_.multiplier = raised || status_.done
+    const Vector<T> next = raised || status_.done
                                ? traction
                                : accelerator_.next(unknowns_.multiplier, traction, progress_.has_same_states(),
                                                    progress_.contraction(), cones);
+    unknowns_ = {equilibrium.unknowns.u, next, equilibrium.unknowns.time};
   }
 
   const UzawaAL& method_;
@@ -148,15 +137,13 @@ class AugmentationLoop {
   const bool truncated_ = method_.sensitivity == UzawaAL::Sensitivity::truncated;
   const int limit_ = method_.max_augmentations * (truncated_ ? 1 : Carried<T>::augmentations);
   const RegularisationField<T> initial_;
-  const RunScales
-      before_;  ///< of each augmentation's start. Why: an extrapolated lambda may overshoot, which must not raise them
+  const RunScales before_;  ///< of each augmentation's start, so that a lambda that overshoots does not raise them
   std::span<const ContactState> resumed_;  ///< states assumed by the first augmentation
   Unknowns<T> unknowns_;
   AugmentationProgress<T> progress_;
   Accelerator<T> accelerator_;
   AugmentationStatus status_;
   bool inexact_ = !truncated_;  ///< whether the next inner solve may end short of its tolerance
-  int times_within_ = 0;        ///< successive augmentations within the tolerance
   Increment<T> increment_;
 };
 

@@ -97,7 +97,7 @@ struct Derivatives::Progress {
     std::vector<std::vector<State<Direction>>> reached;
     for (std::size_t n = done; n < end && !failed; ++n) {
       if (!loads.empty()) problem.prepared = std::move(loads[n - done]);
-      const State<double>& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
+      const State<double>& previous = trajectory.before(n);
       failed = !differentiate_increment(problem, previous, increments[n]);
       if (failed) {
         gradients.status = problem.status;
@@ -193,7 +193,7 @@ void Derivatives::follow(const Trajectory<double>& trajectory) {
   const auto& increments = trajectory.increments;
   for (std::size_t n = now.done; n < increments.size() && increments[n].usable(); ++n) {
     now.largest = std::max(now.largest, traction_scale(now.model, now.slots, increments[n].state));
-    const auto& previous = n == 0 ? trajectory.initial : increments[n - 1].state;
+    const auto& previous = trajectory.before(n);
     now.postponed |= !worthwhile || has_ties(now.model, now.slots, now.method, previous, increments[n], now.largest);
     if (now.postponed) return;
     now.advance(trajectory, n + 1, n + 1 == increments.size());

@@ -38,7 +38,7 @@ Path run(const Model& model, const Numbers<double>& numbers, const Method& metho
     const auto& increment = trajectory.increments[n];
     path.values.col(n).head(responses) = evaluate_responses(model, slots, increment.state, increment.time);
     path.states.push_back(increment.state.contact.state);
-    const auto& before = (n == 0 ? trajectory.initial : trajectory.increments[n - 1].state).history.bodies;
+    const auto& before = trajectory.before(n).history.bodies;
     const auto& after = increment.state.history.bodies;
     path.flowing.emplace_back(after.size());
     for (Eigen::Index i = 0; i < after.size(); ++i) path.flowing.back()[i] = after[i] != before[i];

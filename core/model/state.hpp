@@ -107,6 +107,14 @@ struct Trajectory {
   Seconds seconds;
   std::string engine;        ///< "sparse, MUMPS ..." or "condensed, ..."
   int reduced_unknowns = 0;  ///< number of unknowns of Newton's systems
+  /// The state that increment n starts from.
+  const State<T>& before(std::size_t n) const { return n == 0 ? initial : increments[n - 1].state; }
+  /// What the next increment starts from: state, time, and the adaption of rho so far (empty: none).
+  const State<T>& last() const { return before(increments.size()); }
+  double last_time() const { return increments.empty() ? 0 : increments.back().time; }
+  std::vector<double> last_factor() const {
+    return increments.empty() ? std::vector<double>{} : increments.back().rho_factor;
+  }
   /// Ends of all increments, sub-steps included. A run with these times repeats the discrete path.
   std::vector<double> step_table() const {
     std::vector<double> times;

@@ -88,6 +88,8 @@ class AugmentationProgress {
     last_carried_ = carried_;
     return converges;
   }
+  /// Number of successive inner solves within the tolerance. `is_within`: whether the last one is.
+  int times_within(bool is_within) { return times_within_ = is_within ? times_within_ + 1 : 0; }
   /// Declares that rho has changed: the next value belongs to another map.
   void change_map() { same_map_ = false; }
   /// The point with the largest violation among those whose gap does not change with their multiplier, in words of the
@@ -110,6 +112,7 @@ class AugmentationProgress {
   double inner_error_ = 0;   ///< norm of the error that the last inner solve leaves in the update
   double least_update_ = 0;  ///< least norm of an update in the present states
   int idle_ = 0;             ///< augmentations since an update fell to 0.7 of the least
+  int times_within_ = 0;
   double last_carried_ = std::numeric_limits<double>::infinity();
   Vector<double> update_;
   std::vector<double> violations_, last_violations_;

@@ -1,66 +1,13 @@
-/// What goes on between the inner solves of Uzawa's augmentations: whether they have ended and how, what the next inner
-/// solve is asked for, and how rho is adapted.
+/// What goes on between the inner solves of Uzawa's augmentations: whether they have ended and how, and what the next
+/// inner solve is asked for.
 #pragma once
 
+#include "methods/augmentation/adaption.hpp"
 #include "methods/augmentation/augmentation_progress.hpp"
 
 namespace stickslip {
 
 namespace detail {
-
-/// The factor that makes rho of point p a multiple of its nodal stiffness over its area.
-template <class T>
-double factor_to(double multiple, const Slots<T>& slots, const RegularisationField<T>& initial, std::size_t p) {
-  return multiple * value(slots.stiffness[p]) / value(slots.geometry[p].area) / value(initial[p].normal);
-}
-
-/// The factors that an increment begins with: those of the last (none at the start: 1), but none that makes rho larger
-/// than the automatic one. Why: a larger rho costs little in the last augmentations, where states no longer change, and
-/// much in the first, where points come and go. A rho far below the automatic one need not rise in each increment.
-template <class T>
-std::vector<double> first_factors(const Slots<T>& slots, const RegularisationField<T>& initial,
-                                  std::vector<double> last) {
-  const double automatic = UzawaAL::automatic_multiple.of(slots.normals_turn);
-  last.resize(initial.size(), 1);
-  for (std::size_t p = 0; p < last.size(); ++p)
-    last[p] = std::min(last[p], std::max(1.0, factor_to(automatic, slots, initial, p)));
-  return last;
-}
-
-/// Raises rho_factor of each point whose violation did not fall to a quarter, fourfold, up to 1e3 nodal stiffnesses.
-/// `eager`: also where it did not fall to a hundredth, up to the automatic rho of fixed normals. `before`, `now`:
-/// violations per point, length; a violation up to `negligible` counts as zero. True if a factor rose.
-template <class T>
-bool adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const std::vector<double>& before,
-           const std::vector<double>& now, double negligible, bool eager, std::vector<double>& factor) {
-  bool raised = false;
-  for (std::size_t p = 0; p < before.size(); ++p) {
-    const bool slow = now[p] > 0.25 * before[p], poor = eager && now[p] > 0.01 * before[p];
-    if (now[p] <= negligible || !(slow || poor)) continue;
-    const double most = slow ? 1e3 : UzawaAL::automatic_multiple.fixed;
-    const double wanted = std::min(4 * factor[p], factor_to(most, slots, initial, p));
-    if (!(wanted > 1.001 * factor[p])) continue;  // (rounding must not decide whether rho is there already)
-    factor[p] = wanted;
-    raised = true;
-  }
-  return raised;
-}
-
-/// The multiplier in the friction cones. Compression is kept and tension set to zero; the tangential part is shortened
-/// to the bound.
-template <class T>
-Vector<T> projected_multiplier(const Model& model, const Slots<T>& slots, Vector<T> multiplier) {
-  for (const auto& point : model.points) {
-    T& normal = multiplier[point.multiplier];
-    if (value(normal) > 0) normal = T(0);
-    if (point.tangents == 0) continue;
-    auto tangential = multiplier.segment(point.multiplier + 1, point.tangents);
-    const auto& law = slots.friction[point.contact];
-    const double bound = law.bound(-value(normal)), magnitude = norm(values(tangential));
-    if (magnitude > bound) tangential *= law.bound(T(-normal), law.piece(-value(normal))) / norm(tangential);
-  }
-  return multiplier;
-}
 
 /// Share of its first residual at which an inner solve may end while more augmentations follow. Why: an exact solve
 /// would change, by rounding, the states of points that hardly slip. A share of 0.01 does not slow the augmentations
@@ -148,6 +95,21 @@ AugmentationStatus augmentation_status(const UzawaAL& method, const Slots<T>& sl
   if (!progress.is_two_cycle()) return result;
   const std::string cycle = "the augmentations go to and fro between two multipliers";
   return end(Status::cycle, cycle + (method.is_globalised() ? "" : frozen_advice));
+}
+
+/// Records an inner solve, and judges whether the augmentations have ended.
+template <class T>
+AugmentationStatus judge(const UzawaAL& method, const Run<T>& run, const ContactInput<T>& input, const Unknowns<T>& at,
+                         const Equilibrium<T>& equilibrium, AugmentationProgress<T>& progress) {
+  const auto &first = equilibrium.history.front(), &last = equilibrium.history.back();
+  const double moved = largest_nodal_norm(run.engine.compact(equilibrium.unknowns.u), run.model.dimension);
+  const bool is_rounding = equilibrium.status == Status::converged_at_roundoff;
+  progress.record(at.multiplier, equilibrium.field, moved, first.residual > 0 ? last.residual / first.residual : 0);
+  auto status =
+      augmentation_status(method, run.slots, input.rho, moved,
+                          is_rounding ? last.equilibrium * run.account.scales.force : 0, run.account.scales, progress);
+  status.done |= progress.times_within(status.within_tolerance && !equilibrium.inexact) >= patience_at_ties;
+  return status;
 }
 
 /// Sets status and message of the increment, if the augmentations are done or their number is at its limit. The outer

@@ -80,7 +80,7 @@ class NewtonIterations {
   std::vector<IterationRecord>& history() { return result_.history; }
 
   void record(int iteration) {
-    history().push_back(detail::record(at_, used_, evaluate_.accept(at_), step_length_));
+    history().push_back(detail::record(at_, used_, evaluate_.patches().accept(at_.field), step_length_));
     if (account_.trace)
       account_.trace->take(task_.contact, Vector<T>(engine_.spread(unknowns_.u)), unknowns_.multiplier, at_.field,
                            history().back(), iteration);
@@ -135,17 +135,18 @@ class NewtonIterations {
   }
   bool is_linear() const { return task_.contact.model.effects.linear_bulk; }
 
-  /// Whether points that slide along curves give another way on from an end. States may cycle because points go to and
-  /// fro at a vertex: then the points are kept on their patches. From the solution of that there may be a way to one in
-  /// which all points face what they are on; it is tried once. Kept points that face something else are no solution.
+  bool is_kept_wrong() { return evaluate_.patches().is_wrong(task_.contact, engine_.compact(unknowns_.u), at_.field); }
+
+  /// Whether points that slide along curves give another way on from an end (methods/rescue/kept_patches.hpp): from a
+  /// cycle, points kept on their patches; once, from a wrong solution of that, points let go.
   bool goes_on(NewtonEnd& end) {
-    const bool wrong = is_converged(end.status) && evaluate_.keeps_wrong(unknowns_, at_.field);
+    const bool wrong = is_converged(end.status) && is_kept_wrong();
     const bool first = wrong && !released_;
     if (first) {
       released_ = true;
-      evaluate_.release();
+      evaluate_.patches().release();
     }
-    if (first || (end.status == Status::cycle && evaluate_.keep_patches())) {
+    if (first || (end.status == Status::cycle && evaluate_.patches().keep(task_.contact.model))) {
       stop_.forget();
       at_ = evaluate_(unknowns_);
       return true;

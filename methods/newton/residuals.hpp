@@ -8,9 +8,9 @@
 
 #include "core/contact/segment_facets.hpp"
 #include "core/model/contact_assembly.hpp"
-#include "core/model/facings.hpp"
 #include "core/model/loading.hpp"
 #include "methods/newton/equilibrium.hpp"
+#include "methods/rescue/kept_patches.hpp"
 
 namespace stickslip {
 
@@ -35,21 +35,6 @@ struct Residuals {
            tangential <= std::max({tolerance, floor_length, floor_traction});
   }
 };
-
-/// Whether a point has come to face another patch of its curve. Never for segment-integrated points, which have no kink
-/// between patches.
-inline bool has_crossed(const Facing& before, const Facing& after) {
-  return before.pieces.empty() && after.pieces.empty() && before.patch != after.patch;
-}
-
-/// Number of closed points that face another patch than in `last`.
-template <class T>
-int count_crossings(const ContactField<T>& field, const std::vector<Facing>& last) {
-  int crossed = 0;
-  for (std::size_t p = 0; p < last.size(); ++p)
-    crossed += field.state[p] != ContactState::open && has_crossed(last[p], field.facing[p]);
-  return crossed;
-}
 
 /// Field, rows and residuals of one Newton iterate.
 template <class T>
@@ -208,16 +193,8 @@ class Evaluator {
     const double largest = largest_nodal_norm(engine_.compact(Vector<T>(step.col(0))), task_.contact.model.dimension);
     return largest > longest_step_ ? longest_step_ / largest : 1;
   }
-  /// Accepts an evaluation as the next iterate. Returns the number of closed points that face another patch than
-  /// before.
-  int accept(const detail::Evaluation<T>& at);
-  /// Keeps points that alternate between two patches at a corner on their present patch, until the equilibrium is
-  /// found. Why: at a corner the two normals push a point to either side for ever. False if no point alternates.
-  bool keep_patches();
-  /// Whether a closed point was kept on a patch that it does not face.
-  bool keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const;
-  /// Ends the effect of keep_patches().
-  void release();
+  /// What closed points face from iterate to iterate.
+  KeptPatches<T>& patches() { return patches_; }
   /// Replaces the rows of an evaluation by those in given branches.
   void take_rows_in(const std::vector<ContactState>& branches, const Unknowns<T>& unknowns, detail::Evaluation<T>& at);
 
@@ -246,12 +223,9 @@ class Evaluator {
   Engine<T>& engine_;
   const EquilibriumTask<T>& task_;
   Account& account_;
-  double prescribed_;                      ///< largest displacement that supports prescribe
-  double longest_step_ = 0;                ///< largest step of a contact node: the largest facet; 0: unlimited
-  std::vector<Facing> last_;               ///< of the last iterate; empty: no point slides along a curve
-  std::vector<std::vector<int>> visited_;  ///< per point: the patches that it has faced
-  std::vector<char> returned_;             ///< per point: whether it came back to one of them
-  std::vector<int> kept_;                  ///< per point: the patch that it is kept on, or none; empty: no point
+  double prescribed_;        ///< largest displacement that supports prescribe
+  double longest_step_ = 0;  ///< largest step of a contact node: the largest facet; 0: unlimited
+  KeptPatches<T> patches_;
 };
 
 /// Forces of contact and of the anchor, if any, on the contact nodes, compact.
@@ -261,56 +235,6 @@ Vector<T> Evaluator<T>::contact_field_forces(const Vector<T>& compact, const Con
   Vector<T> forces = contact_forces(model, task_.contact.slots, field);
   if (task_.anchor.stiffness.size() > 0) forces += task_.anchor.force(compact, model.dimension);
   return forces;
-}
-
-template <class T>
-int Evaluator<T>::accept(const detail::Evaluation<T>& at) {
-  const auto& facing = at.field.facing;
-  int crossed = 0;
-  for (std::size_t p = 0; p < facing.size() && !last_.empty(); ++p) {
-    if (at.field.state[p] == ContactState::open || !detail::has_crossed(last_[p], facing[p])) continue;
-    ++crossed;
-    auto& visited = visited_[p];
-    const bool again = std::find(visited.begin(), visited.end(), facing[p].patch) != visited.end();
-    if (again) returned_[p] = 1;
-    visited.push_back(facing[p].patch);
-  }
-  if (last_.empty()) {
-    for (const Facing& f : facing) visited_.push_back({f.patch});
-    returned_.assign(facing.size(), 0);
-  }
-  last_ = facing;
-  return crossed;
-}
-
-template <class T>
-bool Evaluator<T>::keep_patches() {
-  bool any = false;
-  for (std::size_t p = 0; p < last_.size(); ++p) {
-    if (!returned_[p] || last_[p].patch == Patch::none || (!kept_.empty() && kept_[p] != Patch::none)) continue;
-    const auto& point = task_.contact.model.points[p];
-    if (task_.contact.model.curves[point.curve].goes_on_around(last_[p].patch)) continue;
-    kept_.resize(last_.size(), Patch::none);
-    kept_[p] = last_[p].patch;
-    any = true;
-  }
-  return any;
-}
-
-template <class T>
-bool Evaluator<T>::keeps_wrong(const Unknowns<T>& unknowns, const ContactField<T>& field) const {
-  if (kept_.empty()) return false;
-  const auto free = detail::facings(task_.contact, engine_.compact(unknowns.u));
-  for (std::size_t p = 0; p < kept_.size(); ++p)
-    if (kept_[p] != Patch::none && field.state[p] != ContactState::open && free[p].patch != kept_[p]) return true;
-  return false;
-}
-
-template <class T>
-void Evaluator<T>::release() {
-  kept_.clear();
-  last_.clear();
-  visited_.clear();
 }
 
 template <class T>
@@ -324,7 +248,7 @@ detail::Evaluation<T> Evaluator<T>::operator()(const Unknowns<T>& unknowns) {
   std::vector<Facing> facing;
   if (model.slides_along_curves()) {
     const Stopwatch time(account_.seconds.contact_search);
-    facing = detail::facings(input, compact, kept_);
+    facing = detail::facings(input, compact, patches_.kept());
     input.facing = &facing;
   }
   Vector<T> forces;

@@ -12,7 +12,7 @@
 ///   5  motion    the overdamped motion of all bodies from the last state to rest
 ///   6  branches  those of 4 where repeated constraints hide some, if nothing else was found
 ///
-/// A step that this leaves without a solution is cut (methods/stepping/solve.hpp). All that one step spends in vain,
+/// A step that this leaves without a solution is cut (methods/stepping/step.hpp). All that one step spends in vain,
 /// parts of it included, is bounded (methods/rescue/work_bound.hpp); once that is spent, 4 to 6 are left out.
 ///
 /// There may be several solutions where the determinant of a tangent on the way has another sign, where friction may
@@ -53,7 +53,7 @@ class IncrementSearch {
 
   Increment<T> find() {
     if (auto rest = rest_of_floating_bodies()) return std::move(*rest);
-    found_ = solve_increment(run_, previous_, factor_, time_, Start<T>{previous_, {}});
+    found_ = solve_increment(run_, previous_, factor_, time_, {.state = previous_, .anchor = {}});
     if (prevents_what_crosses()) return failed(Status::infeasible, "");
     if (!rescues_ || is_final()) return std::move(found_);
     if (!solved() && !balances()) return failed(Status::no_equilibrium, found_.message);
@@ -115,7 +115,7 @@ class IncrementSearch {
     const State<T>& target = all.states[*all.resting];
     if (solved() && same_solution(run_.model, found_.state, target, all.reach)) return found_;
     const RunScales after = std::exchange(run_.account.scales, before_);
-    auto taken = solve_increment(run_, previous_, factor_, time_, Start<T>{target, {}});
+    auto taken = solve_increment(run_, previous_, factor_, time_, {.state = target, .anchor = {}});
     if (!taken.usable() || !same_solution(run_.model, taken.state, target, all.reach)) {
       run_.account.scales = after;
       return std::nullopt;

@@ -116,7 +116,7 @@ class Sequence {
         at = evaluate_(unknowns_);
       }
       if (engine_.condenses_tangents()) solve_with_last_tangent(history_.empty() ? 1 : history_.back().residual, at);
-      history_.push_back(record(at, {}, (before == branches_ ? 0 : 1) + evaluate_.accept(at), 1));
+      history_.push_back(record(at, {}, (before == branches_ ? 0 : 1) + evaluate_.patches().accept(at.field), 1));
       if (account_.trace) {
         account_.trace->take(task_.contact, Vector<T>(engine_.spread(unknowns_.u)), unknowns_.multiplier, at.field,
                              history_.back(), step);

@@ -15,17 +15,22 @@
 
 namespace stickslip {
 
+/// Whether supports and closed contacts hold all bodies where a step begins.
+enum class Bodies { held, free };
+
 /// Counts iterations in vain of the attempts at a step: all iterations of an attempt that fails, and, of one that
 /// succeeds, those beyond 20 per equilibrium. So parts of a step that converge as they should cost nothing.
 class WorkBound {
  public:
   /// `counters`: of the run; must outlive it. `spent`: iterations of the run's increments so far, those in vain apart.
-  WorkBound(const Model& model, const Counters& counters, int max_iterations, long spent)
+  /// If a body is free, the motion is the regular way and not a rescue: then the bound is twice as high.
+  WorkBound(const Model& model, const Counters& counters, int max_iterations, long spent, Bodies bodies)
       : counters_(counters), each_(max_iterations) {
     const bool linear = model.effects.linear_bulk && !model.effects.current_geometry;
     const long size = model.dof_count() + dofs_a_point * static_cast<long>(model.points.size());
     const long each = std::max(each_, least_each), affordable = dofs_in_vain / std::max(size, 1L);
     most_ = std::clamp(std::max(spent_again * spent, affordable), few_in_vain * each, equilibria_in_vain * each);
+    if (bodies == Bodies::free) most_ *= 2;
     if (linear) most_ = std::numeric_limits<long>::max();
   }
 

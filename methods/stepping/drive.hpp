@@ -1,5 +1,5 @@
 /// What drives bodies from outside: the motion that supports and obstacles prescribe. Bodies that move much faster than
-/// what drives them may have jumped (methods/stepping/solve.hpp).
+/// what drives them may have jumped (methods/stepping/jumps.hpp).
 #pragma once
 
 #include "core/model/loading.hpp"

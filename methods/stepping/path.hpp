@@ -45,7 +45,7 @@ class Path {
   /// or tractions are not zero at t = 0, an increment at t = 0 comes first.
   bool advance() {
     if (trajectory_.increments.empty()) {
-      WorkBound bound(run_.model, run_.account.counters, newton_of(run_.method).max_iterations, 0);
+      WorkBound bound(run_.model, run_.account.counters, newton_of(run_.method).max_iterations, 0, Bodies::held);
       bound.begin();
       auto held = find_increment(run_, trajectory_.initial, {}, 0.0, bound);
       held.time = 0;
@@ -85,9 +85,10 @@ class Path {
   }
   /// Repeats an increment at its time. `guide`: start displacement of each increment; empty: none.
   bool repeat(double time, const std::vector<Vector<double>>& guide) {
-    State<T> start = last();
+    State<T> start = trajectory_.last();
     if (!guide.empty()) start.displacement = guide[trajectory_.increments.size()].template cast<T>();
-    auto increment = solve_increment(run_, last(), factor(), time, Start<T>{start, {}});
+    auto increment =
+        solve_increment(run_, trajectory_.last(), trajectory_.last_factor(), time, {.state = start, .anchor = {}});
     increment.time = time;
     const bool usable = increment.usable();
     take(std::move(increment));
@@ -98,13 +99,6 @@ class Path {
   static constexpr double smallest = 1.0 / 1024, regrowth = 1.5;
   static constexpr int soon = 3;  // successive uncut steps before the share grows
 
-  const State<T>& last() const {
-    return trajectory_.increments.empty() ? trajectory_.initial : trajectory_.increments.back().state;
-  }
-  double last_time() const { return trajectory_.increments.empty() ? 0 : trajectory_.increments.back().time; }
-  std::vector<double> factor() const {
-    return trajectory_.increments.empty() ? std::vector<double>{} : trajectory_.increments.back().rho_factor;
-  }
   /// The state before the last, and its time; nullptr and 0 at the beginning of the path.
   std::pair<const State<T>*, double> before_last() const {
     const auto& increments = trajectory_.increments;
@@ -120,9 +114,9 @@ class Path {
   enum class Heading { on, over_a_corner };
   /// An increment along the arc, or to the full load if the arc passes it.
   Increment<T> step_on(Heading heading) {
-    const State<T>& previous = last();
+    const State<T>& previous = trajectory_.last();
     const auto [before, then] = before_last();
-    const double ahead = share_ / last_share_, now = last_time();
+    const double ahead = share_ / last_share_, now = trajectory_.last_time();
     State<T> start = previous;
     double guess = now;
     if (before) {
@@ -131,12 +125,13 @@ class Path {
     }
     const Vector<double> left = values(previous.displacement);
     const Arc arc{left, now, share_ * length_, share_ * span_, nodes_, before == nullptr};
-    auto increment = solve_increment(run_, previous, factor(), guess, Start<T>{start, {}, true, &arc});
+    auto increment =
+        solve_increment(run_, previous, trajectory_.last_factor(), guess, {.state = start, .anchor = {}, .arc = &arc});
     if (!increment.usable() || increment.time < end_ * (1 - nearly) || now >= end_) return increment;
     const double part = (end_ - now) / (increment.time - now);
     start = increment.state;
     start.displacement = previous.displacement + T(part) * (increment.state.displacement - previous.displacement);
-    auto landed = solve_increment(run_, previous, factor(), end_, Start<T>{start, {}});
+    auto landed = solve_increment(run_, previous, trajectory_.last_factor(), end_, {.state = start, .anchor = {}});
     landed.time = end_;
     landed.newton += increment.newton;
     landed.augmentations += increment.augmentations;
@@ -151,9 +146,9 @@ class Path {
     const auto [before, then] = before_last();
     if (!increment.usable()) return false;
     if (!before || share_ < is_short) return true;
-    const double motion = (values(last().displacement) - values(before->displacement))
-                              .dot(values(increment.state.displacement) - values(last().displacement));
-    const double load = (last_time() - then) * (increment.time - last_time());
+    const double motion = (values(trajectory_.last().displacement) - values(before->displacement))
+                              .dot(values(increment.state.displacement) - values(trajectory_.last().displacement));
+    const double load = (trajectory_.last_time() - then) * (increment.time - trajectory_.last_time());
     return motion > 0 || motion / (nodes_ * length_ * length_) + load / (span_ * span_) > 0;
   }
 

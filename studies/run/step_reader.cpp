@@ -70,7 +70,7 @@ StepReading StepReader::read(const State<double>& before, double start, const In
 void StepReader::follow(const Trajectory<double>& trajectory, bool lets_go) {
   for (std::size_t n = steps_.size(); n < trajectory.increments.size(); ++n) {
     const auto& increment = trajectory.increments[n];
-    const auto& before = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state;
+    const auto& before = trajectory.before(n);
     const double start = n == 0 ? 0 : trajectory.increments[n - 1].time;
     accuracy_.read(before, increment);
     steps_.emplace_back();

@@ -1,4 +1,4 @@
-/// Points that go to and fro between two facets, and are kept on one (Evaluator::keep_patches).
+/// Points that go to and fro between two facets, and are kept on one (methods/rescue/kept_patches.hpp).
 #include <gtest/gtest.h>
 
 #include "core/engine/engine.hpp"
@@ -28,19 +28,22 @@ TEST(KeptPatches, AreWrongWhereThePointFacesAnother) {
   at.field.state[2] = ContactState::stick;
   const int first = point.patch;
   ASSERT_NE(first, Patch::none);
-  EXPECT_FALSE(evaluate.keep_patches());
+  const auto is_wrong = [&](const Unknowns<double>& u) {
+    return evaluate.patches().is_wrong(input, engine.compact(u.u), at.field);
+  };
+  EXPECT_FALSE(evaluate.patches().keep(model));
   for (const int patch : {first, first + 1, first}) {
     point.patch = patch;
-    evaluate.accept(at);
+    evaluate.patches().accept(at.field);
   }
-  ASSERT_TRUE(evaluate.keep_patches());
+  ASSERT_TRUE(evaluate.patches().keep(model));
   // At the start the point faces `first`, on which it is kept; moved by a facet it faces the next.
-  EXPECT_FALSE(evaluate.keeps_wrong(unknowns, at.field));
+  EXPECT_FALSE(is_wrong(unknowns));
   auto moved = unknowns;
   for (int node : {model.contact_nodes[model.points[2].places[0]]}) moved.u[node * 2] += model.points[2].mesh_size;
-  EXPECT_TRUE(evaluate.keeps_wrong(moved, at.field));
+  EXPECT_TRUE(is_wrong(moved));
   at.field.state[2] = ContactState::open;
-  EXPECT_FALSE(evaluate.keeps_wrong(moved, at.field));
+  EXPECT_FALSE(is_wrong(moved));
 }
 
 }  // namespace

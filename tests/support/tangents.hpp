@@ -33,7 +33,7 @@ inline TangentErrors errors_of_tangent(const Model& model, const Slots<double>& 
   using C = derivatives::Complex;
   constexpr double h = 1e-30;
   const auto& increment = trajectory.increments[n];
-  const State<double>&before = n == 0 ? trajectory.initial : trajectory.increments[n - 1].state, &at = increment.state;
+  const State<double>&before = trajectory.before(n), &at = increment.state;
   const auto rho = rho_of(slots, method, increment);
   const Vector<double> motion = arbitrary(model.dof_count(), 1), along = to_compact(model, motion);
   Vector<double> l = arbitrary(model.multiplier_count, 2), lambda = l;  // lambda / rho
