@@ -62,8 +62,8 @@ struct AutoOrSetting {
 
 /// Newton's method, the same for all.
 struct NewtonOptions {
-  double tolerance =
-      1e-12;  ///< relative, each residual to its own scale (methods/newton/residuals.hpp); 0 < tolerance < 1
+  /// Relative, each residual to its own scale (methods/newton/residuals.hpp); 0 < tolerance < 1.
+  double tolerance = 1e-12;
   int max_iterations = 100;  ///< per solve; >= 1. A front of slip may pass one node an iteration
   bool line_search = true;   ///< backtracking where a full step stays in its active set and the residual does not fall
   void tighten(double to) { tolerance = std::min(tolerance, to); }

@@ -73,7 +73,8 @@ std::size_t first_tie(const Model& model, const Slots<double>& slots, const Meth
   return n;
 }
 
-/// Whether a response is a width with an infinite derivative: at most one point is closed, and another is about to close.
+/// Whether a response is a width with an infinite derivative: at most one point is closed, and another is about to
+/// close.
 bool widens_at_once(const Model& model, const Slots<double>& slots, const State<double>& state, std::size_t response) {
   if (model.scene.responses[response].kind != Response::Kind::contact_half_width) return false;
   const double largest = traction_scale(model, slots, state);
@@ -107,8 +108,8 @@ struct SideRun {
   }
 
   /// Differentiates increment n, the one after the last. Then on_increment(increment) is called with the derivative in
-  /// blocks[0].current and the branches in `increment`. False if it has no derivative. `unconfirmed`: as
-  /// in differentiate_side().
+  /// blocks[0].current and the branches in `increment`. False if it has no derivative. `unconfirmed`: as in
+  /// differentiate_side().
   template <class F>
   bool advance(std::size_t n, double side, F&& on_increment, Unconfirmed unconfirmed = Unconfirmed::fails) {
     Differentiation problem{method, model, slots, engine, blocks, 1, {}};

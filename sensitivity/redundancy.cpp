@@ -208,8 +208,8 @@ UndeterminedForces forces_of(const Model& model, const Slots<double>& slots, con
 
 bool constraints_repeat(const Model& model, const Slots<double>& slots, const ContactField<double>& field,
                         const std::vector<char>& decided) {
-  constexpr std::size_t most =
-      500;  // largest number of rows of a dense factorisation; with more, constraints count as repeated
+  // Largest number of rows of a dense factorisation; with more, constraints count as repeated.
+  constexpr std::size_t most = 500;
   std::vector<int> closed;
   std::vector<Rows> rows(model.points.size());
   std::vector<std::vector<int>> nodes(model.points.size());

@@ -139,13 +139,13 @@ SchemeEquilibrium scheme_equilibrium(const UzawaAL& method, const Problem& probl
 ///
 ///   left <= enough   left = change q / (1 - q), the sum of all changes to come; enough: `tolerance` of D lambda
 ///   stalled          change <= floors, or change <= rounding of D lambda
-///   drifts           changes below 1e-11 of D lambda do not fall. Cause: constraints that repeat one another, whose
-///                    multipliers drift by the rounding between them. It is no slow mode: at such a q a slow mode would
-///                    begin with larger changes
-///   rests            for ten passes no change has fallen to half of the least, and D lambda has come no farther in all
-///                    of them than four such changes. A slow mode would go on in its direction. What is left is the
-///                    rounding of the back-solves, which the factor's condition number magnifies; up to 1e-9 of D
-///                    lambda, or of what a contact would make of the motion if D lambda is zero
+///   drifts           the change is below 1e-11 of D lambda, and does not fall. Cause: constraints repeat one another,
+///                    and rounding between them moves their multipliers in every pass. A mode that converges as slowly
+///                    as this would have larger changes
+///   rests            the least change so far is ten passes old, none since was half of it, and D lambda is no farther
+///                    than four of it from where it was then. A slow mode would have moved on in one direction. So the
+///                    changes are rounding of the back-solves, which the factor's condition number magnifies. It may be
+///                    up to 1e-9 of D lambda, or of the traction k / A |Du| if that is larger
 ///
 /// The rounding of Dg is that of its terms, and that of the forces that balance in it. Example: tractions do not depend
 /// on a thickness, so its Dg is this rounding alone.

@@ -23,7 +23,7 @@ namespace {
 /// Below this size the fixed cost of a call of MUMPS (40 us) outweighs its faster kernels.
 constexpr int small_matrix = 250;
 
-/// The backend that `automatic` stands for; the measurements are in core/README.md, "Linear algebra".
+/// The backend that `automatic` stands for; measured in docs/decisions.md, "Libraries of linear algebra".
 Backend preferred(Symmetry symmetry, int size) {
   if (symmetry == Symmetry::positive_definite && has_backend(Backend::cholmod)) return Backend::cholmod;
   if (size < small_matrix) return Backend::eigen;

@@ -9,8 +9,8 @@
 
 namespace stickslip {
 
-/// By Cholesky factorisation, which succeeds if there are none (CHOLMOD, where it is built in); else by the signs of the
-/// pivots of L D L^T, which are those of the eigenvalues (Sylvester's law of inertia), without pivoting (Eigen).
+/// By Cholesky factorisation, which succeeds if there are none (CHOLMOD, where it is built in); else by the signs of
+/// the pivots of L D L^T, which are those of the eigenvalues (Sylvester's law of inertia), without pivoting (Eigen).
 class Inertia {
  public:
   /// Orders and analyses the pattern.
@@ -19,7 +19,8 @@ class Inertia {
   Inertia(Inertia&&) noexcept;
   Inertia& operator=(Inertia&&) noexcept;
 
-  /// `values`: one per entry of the pattern. Adds to `factorizations` how many were made. Nothing where a pivot vanishes.
+  /// `values`: one per entry of the pattern. Adds to `factorizations` how many were made. Nothing where a pivot
+  /// vanishes.
   std::optional<int> negative_eigenvalues(const std::vector<double>& values, long& factorizations);
   /// Size of the factor.
   FactorSize size() const { return size_; }

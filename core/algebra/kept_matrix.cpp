@@ -190,8 +190,8 @@ typename KeptMatrix<T>::Check KeptMatrix<T>::check_columns(const Matrix<T>& solu
   if (!(result.error > refine_above)) return result;
   const Eigen::ArrayXd of_row = (transposed ? scaling().column : scaling().row).array();
   const Eigen::ArrayXd of_unknown = (transposed ? scaling().row : scaling().column).array();
-  const double noise =
-      1000.0 * pattern_->size * std::numeric_limits<double>::epsilon();  // Arioli, Demmel and Duff's tau
+  // Arioli, Demmel and Duff's tau.
+  const double noise = 1000.0 * pattern_->size * std::numeric_limits<double>::epsilon();
   for (Eigen::Index c = 0; c < x.cols(); ++c) {
     const double largest = (size_of_x.col(c) / of_unknown).maxCoeff();
     for (Eigen::Index i = 0; i < x.rows(); ++i) {

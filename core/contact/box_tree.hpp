@@ -28,8 +28,8 @@ struct Bounds {
 template <int D>
 class BoxTree {
  public:
-  /// The left child of boxes_[k] is boxes_[k + 1]. `right`: index of the right child. `item`: of a leaf; -1: the box has
-  /// children.
+  /// The left child of boxes_[k] is boxes_[k + 1]. `right`: index of the right child. `item`: of a leaf; -1: the box
+  /// has children.
   struct Box : Bounds<D> {
     int right = 0, item = -1;
   };

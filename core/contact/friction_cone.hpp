@@ -1,4 +1,5 @@
-/// Friction cone: unilateral contact with friction as one projection. Every method uses it, and no other.
+/// Friction cone: unilateral contact with friction as one projection. All methods use this projection and have none of
+/// their own.
 ///
 ///     trial  z = lambda + rho g        traction  t = P_mu(z)
 ///

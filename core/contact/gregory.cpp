@@ -3,11 +3,11 @@
 ///
 ///   e_k = p + cos(k theta) t_1 + sin(k theta) t_2
 ///
-/// with theta = 2 pi / K inside of a surface and pi / K at its border, so that all e_k lie in one plane through p. Along
-/// the edge a -> b the surface has a cubic b_i = p_a, e_a, e_b, p_b, and across it a derivative in the plane of the edge
-/// and of a field r, which runs from its value at a to that at b:
+/// with theta = 2 pi / K inside of a surface and pi / K at its border, so that all e_k lie in one plane through p.
+/// Along the edge a -> b the surface has a cubic b_i = p_a, e_a, e_b, p_b, and across it a derivative in the plane of
+/// the edge and of a field r, which runs from its value at a to that at b. The inner control point at a is
 ///
-///   (c_b b_0 + (D - 2 c_a - c_b) b_1 + 2 c_a b_2 + r_a) / D   inner control point at a,  c = cos theta, D = 3; triangle: 4
+///   (c_b b_0 + (D - 2 c_a - c_b) b_1 + 2 c_a b_2 + r_a) / D,   c = cos theta, D = 3; in a triangle D = 4
 ///
 /// The two faces at an edge use r and -r, so their normals agree there. Sources:
 ///   Gregory, Smooth interpolation without twist constraints, in: Computer Aided Geometric Design (1974)
@@ -206,8 +206,8 @@ class ControlPoints {
     return 1 + C + std::cos(pi / n) * std::sqrt(2 * (9 + C));
   }
 
-  /// Factor of the tangents at a node with n faces, by which |e - p| is 2/3 lambda |q| of Loop et al., lambda the second
-  /// eigenvalue of subdivision.
+  /// Factor of the tangents at a node with n faces, by which |e - p| is 2/3 lambda |q| of Loop et al., lambda the
+  /// second eigenvalue of subdivision.
   static double limit_size(int n) {
     const double theta = 2 * pi / n, C = std::cos(theta), half = std::cos(pi / n);
     const double A = tangent_mask(n), sigma = 1 / std::sqrt(4 + half * half);

@@ -1,10 +1,13 @@
-/// The list of rigid surfaces. Each has a file of its own: its description for the scene, which says its keys
-/// (core/algebra/described.hpp), whether it is made for the plane and for space (is_in_plane,
-/// is_in_space), whether it is flat (is_flat), and
-/// against(X, w, surface, numbers), the geometry of the place X + w: its gap is that of X and what the displacement w
-/// adds, so that a small displacement keeps its digits far from the origin. What it lacks does not compile. One with a
-/// place from which no part of it is nearer than another adds ambiguous_at(). A polyline has facets in place of
-/// against(): which one a place faces is found by search (core/contact/facet_search.hpp, curve_search.hpp).
+/// The list of rigid surfaces. Each has a file of its own, with
+///
+///   its description    for the scene: its keys (core/algebra/described.hpp); whether it is made for the plane and for
+///                      space (is_in_plane, is_in_space); whether it is flat (is_flat)
+///   against()          of (X, w, surface, numbers): the geometry of the place X + w. Its gap is that of X and what the
+///                      displacement w adds, so that a small displacement keeps its digits far from the origin
+///   ambiguous_at()     only if it has a place from which no part of it is nearer than another
+///
+/// What it lacks does not compile. A polyline has facets in place of against(): which one a place faces is found by
+/// search (core/contact/facet_search.hpp, curve_search.hpp).
 #pragma once
 
 #include <concepts>

@@ -1,4 +1,5 @@
-/// The facets of a segment of segments.hpp: its slave facet with the points on it, and what they face of its master facet.
+/// The facets of a segment of segments.hpp: its slave facet with the points on it, and what they face of its master
+/// facet.
 #pragma once
 
 #include <array>

@@ -56,8 +56,8 @@ std::set<Edge> sharp_edges(const std::vector<SurfacePatch>& patches, double corn
   return sharp;
 }
 
-/// Per vertex, whether borders and creases have a corner there: they turn by more than `corner` degrees, others than two
-/// meet, or a smooth part of the surface has one face there.
+/// Per vertex, whether borders and creases have a corner there: they turn by more than `corner` degrees, others than
+/// two meet, or a smooth part of the surface has one face there.
 std::vector<char> border_corners(const std::vector<SurfacePatch>& patches, const std::set<Edge>& sharp, double corner,
                                  const Points<double>& positions) {
   std::map<int, std::vector<int>> ends;

@@ -4,8 +4,8 @@
 ///   y(s, t) = sum N_i(s, t) y_i     foot of x:  (x - y) . y_s = (x - y) . y_t = 0     normal  y_s x y_t / |y_s x y_t|
 ///
 ///   facets        N_i of a triangle or of a bilinear quadrilateral
-///   Catmull-Rom   through the nodes, the normal is continuous: Gregory patches on meshes of triangles and quadrilaterals
-///                 with any number of faces at a node; the tensor product of Catmull-Rom splines where four
+///   Catmull-Rom   through the nodes, with a continuous normal: Gregory patches on meshes of triangles and
+///                 quadrilaterals with any number of faces at a node; the tensor product of Catmull-Rom splines if four
 ///                 quadrilaterals meet at each node
 ///   B-spline      the same of uniform cubic B-splines, whose control points the nodes are
 ///

@@ -115,8 +115,8 @@ Facing SurfaceSearch::newton_foot(Facing at, const Vec<double, 3>& x, int hops) 
     const Vec<double, 3> off = -y.col(0);
     const Mat<double, 2> metric = y.rightCols<2>().transpose() * y.rightCols<2>();
     Mat<double, 2> slope = foot_slope(weights, around, off);
-    const double determinant =
-        slope.determinant() * metric.determinant();  // of slope as it was: 1 over that of the inverse
+    // Of slope as it was: 1 over that of the inverse.
+    const double determinant = slope.determinant() * metric.determinant();
     const bool is_minimum = determinant > 0 && slope.trace() > 0 && determinant < 1e8;
     if (!is_minimum) slope = foot_slope(weights, around, Vec<double, 3>::Zero());
     Vec<double, 2> move = slope * Vec<double, 2>(off.dot(y.col(1)), off.dot(y.col(2)));

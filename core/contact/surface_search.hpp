@@ -2,8 +2,8 @@
 ///
 /// Beyond an edge at which the normal jumps its two patches go on, each along itself, and a point that projects into
 /// neither of them has the larger of the two gaps. So the gap is continuous there, and an edge has no contact state of
-/// its own. At a corner the same holds of all patches there. A patch that does not oppose the slave side is passed over:
-/// where it joins, the surface ends as at a border.
+/// its own. At a corner the same holds of all patches there. A patch that does not oppose the slave side is passed
+/// over: where it joins, the surface ends as at a border.
 #pragma once
 
 #include "core/contact/face_search.hpp"

@@ -63,8 +63,8 @@ struct MixedRows {
   std::vector<int> row_of_dof;  ///< -1: prescribed, or inside a condensed body
   std::vector<int> dofs;        ///< of the rows
   std::vector<int> contact;     ///< contact dofs of condensed bodies, as the rows of their Schur complement
-  std::vector<std::pair<int, int>>
-      blocks;  ///< of each condensed body in contact: first of its `contact`, and their end
+  /// Of each condensed body in contact: first of its `contact`, and their end.
+  std::vector<std::pair<int, int>> blocks;
 
   explicit MixedRows(const Model& model);
   /// Adds the rows of the blocks, a list each.

@@ -2,8 +2,8 @@
 /// displacements there are.
 ///
 ///   nothing        all dofs; forces and tangent come from the elements (engine/full_bodies.hpp)
-///   some bodies    those of constant stiffness, once, by their Schur complement on the contact dofs; all dofs, of which
-///                  those inside condensed bodies mean nothing (engine/mixed_bodies.hpp)
+///   some bodies    those of constant stiffness, once, by their Schur complement on the contact dofs; all dofs, of
+///                  which those inside condensed bodies mean nothing (engine/mixed_bodies.hpp)
 ///   all bodies     likewise; the contact dofs alone (engine/condensed_bodies.hpp)
 ///
 /// These displacements are the layout of the engine's rows and increments, in the frames of the nodes
@@ -24,8 +24,8 @@ struct ForceScale {
   double rounding = 0;  ///< what rounding alone may leave in a row
 };
 
-/// Largest Euclidean norm of the nodal vectors (D consecutive entries) of the primal parts; NaN where one is. V: a vector,
-/// or a part of one.
+/// Largest Euclidean norm of the nodal vectors (D consecutive entries) of the primal parts; NaN where one is. V: a
+/// vector, or a part of one.
 template <class V>
 double largest_nodal_norm(const V& v, int D) {
   double most = 0, extreme = 0;  // largest sum of squares; largest norm whose squares overflow or vanish

@@ -1,5 +1,5 @@
-/// What systems of bodies and contact points have in common, sparse or dense: the entries of the points, the factor that
-/// is used again, updated or made anew, and the solution with it.
+/// What systems of bodies and contact points have in common, sparse or dense: the entries of the points, the factor
+/// that is used again, updated or made anew, and the solution with it.
 #pragma once
 
 #include "core/engine/tangent_system.hpp"

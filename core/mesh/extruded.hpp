@@ -1,8 +1,8 @@
 /// A plane mesh drawn out along z.
 ///
 /// Node n of the plane mesh in layer k, counted from `from` on, has number k (plane nodes) + n. Quadrilaterals become
-/// hexahedra. The prism on a triangle becomes three tetrahedra. The numbers of its nodes decide which, so the diagonals of
-/// neighbours agree. The sides are those of the plane mesh, and front and back, where z is `from` and `to`.
+/// hexahedra. The prism on a triangle becomes three tetrahedra. The numbers of its nodes decide which, so the diagonals
+/// of neighbours agree. The sides are those of the plane mesh, and front and back, where z is `from` and `to`.
 #pragma once
 
 #include <string>

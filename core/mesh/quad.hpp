@@ -1,5 +1,5 @@
-/// Convex quadrilateral, a bilinear image of a grid (core/mesh/structured.hpp): corner 0 to corner 1 is its bottom, then
-/// right, top and left.
+/// Convex quadrilateral, a bilinear image of a grid (core/mesh/structured.hpp): corner 0 to corner 1 is its bottom,
+/// then right, top and left.
 #pragma once
 
 #include <array>

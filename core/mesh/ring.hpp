@@ -1,6 +1,6 @@
-/// Ring, or a sector of one, between two concentric circles: a grid (core/mesh/structured.hpp) with i along the radius, from
-/// the inner circle outwards, and j around, counter-clockwise from from_angle. Sides `inner outer`, and `start` (at
-/// from_angle) and `end` where it is open. A ring of 360 degrees is closed: its last row of nodes is the first.
+/// Ring, or a sector of one, between two concentric circles: a grid (core/mesh/structured.hpp) with i along the radius,
+/// from the inner circle outwards, and j around, counter-clockwise from from_angle. Sides `inner outer`, and `start`
+/// (at from_angle) and `end` where it is open. A ring of 360 degrees is closed: its last row of nodes is the first.
 #pragma once
 
 #include <array>

@@ -47,8 +47,7 @@ struct ElementSide {
 /// All sides of elements of a continuum that only one element has, in the order of the elements.
 std::vector<ElementSide> free_sides(const Mesh&);
 
-/// The same as one side. In the plane one loop after another, the solid on their
-/// left; in space nodes ascending.
+/// The same as one side. In the plane one loop after another, the solid on their left; in space nodes ascending.
 Side boundary_of(const Mesh&);
 
 /// The candidate with the least edit distance to the name (the first of equals); "" if there is none.

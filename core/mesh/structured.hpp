@@ -1,5 +1,5 @@
-/// What the structured generators share: geometric grading, a cell that is one quadrilateral or two triangles, and grids
-/// of cells.
+/// What the structured generators share: geometric grading, a cell that is one quadrilateral or two triangles, and
+/// grids of cells.
 #pragma once
 
 #include <algorithm>
@@ -117,8 +117,8 @@ inline Side closed_side(std::vector<int> nodes) {
 /// The sides of a grid that cells may be graded towards.
 inline constexpr std::array grid_sides{"left", "right", "bottom", "top"};
 
-/// A rectangle of cells[0] x cells[1] cells (box, quad, ring). Node (i, j) has number j (cells[0] + 1) + i. Sides `bottom
-/// right top left`, each from its start to its end counter-clockwise.
+/// A rectangle of cells[0] x cells[1] cells (box, quad, ring). Node (i, j) has number j (cells[0] + 1) + i. Sides
+/// `bottom right top left`, each from its start to its end counter-clockwise.
 Mesh grid(const std::array<int, 2>& cells, const std::string& element);
 
 /// A block of cells in space. Node (i, j, k) has number (k (cells[1] + 1) + j) (cells[0] + 1) + i. Sides: left right

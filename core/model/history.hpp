@@ -1,7 +1,8 @@
-/// Local history: what an increment reads of the last one, apart from start values, and apart from the traction where a
-/// method carries that on. Kernels read the history and never the last displacements. So direct differentiation carries
-/// its derivative from increment to increment, an adjoint goes back through it, and the oracle runs it in its own
-/// scalar. The first history is a function of the slots: initial_history().
+/// Local history: the only values of the last increment that the residual of the next one depends on, except for
+/// tractions that a method carries on itself. (Start values do not change a residual.) Kernels read the history and
+/// never the last displacements. So direct differentiation carries the derivative of the history from increment to
+/// increment, an adjoint goes back through it, and the oracle computes it in its own scalar. The first history is a
+/// function of the slots: initial_history().
 #pragma once
 
 #include <vector>

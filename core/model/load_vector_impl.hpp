@@ -1,5 +1,5 @@
-/// Definitions of the templates in slots.hpp for loads: consistent shares of what acts on facets and in elements, in any
-/// scalar; and those of pressures that follow a side, by its displacements.
+/// Definitions of the templates in slots.hpp for loads: consistent shares of what acts on facets and in elements, in
+/// any scalar; and those of pressures that follow a side, by its displacements.
 #pragma once
 
 #include "core/model/element_nodes.hpp"

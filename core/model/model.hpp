@@ -93,8 +93,8 @@ struct ContactPoint {
   std::vector<int> corners;
   std::vector<FacePlace> faces;               ///< faces: the place that it faces, on each face that has it
   std::vector<std::vector<int>> area_facets;  ///< facets of the slave side at the node
-  std::vector<std::vector<int>>
-      facet_places;  ///< the same as indices in Model::contact_nodes; for solid bodies along a curve
+  /// The same as indices in Model::contact_nodes; for solid bodies along a curve.
+  std::vector<std::vector<int>> facet_places;
   std::vector<std::vector<int>> area_edges;  ///< sides of elements at the node, a share of which is its tributary area
   /// Segment-integrated contact: the segments that the multiplier of nodes[0] acts on. At finite strain: its whole
   /// slave facets, whose present segments are Facing::pieces.

@@ -227,8 +227,8 @@ std::set<int> corners_of(const SideSet& side, const Points<double>& points) {
 /// Segments that the multiplier of each slave node acts on.
 ///
 ///   whole    one segment per whole slave facet, without a master, because what it faces is found later
-///   corners  nodes that carry no multiplier on a facet whose other node carries one. Why: two faces that meet at an edge
-///            face other masters, and one multiplier has one normal
+///   corners  nodes that carry no multiplier on a facet whose other node carries one. Why: two faces that meet at an
+///            edge face other masters, and one multiplier has one normal
 std::map<int, std::vector<Segment>> segments_of_nodes(const Facets& master, const Pairing& pairing, bool whole,
                                                       const std::set<int>& corners) {
   const std::set<int> nodes(pairing.slave.nodes.begin(), pairing.slave.nodes.end());

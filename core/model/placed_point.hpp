@@ -75,7 +75,8 @@ void turn_with(const Frame<T, D>& frame, PlacedPoint<U, D>& at) {
 ///
 ///   e - (e . n) / (1 + n_0 . n) (n_0 + n)
 ///
-/// So components of tractions and slips keep their directions on the surface. `before`: n_0; `first`: the first tangent.
+/// So components of tractions and slips keep their directions on the surface. `before`: n_0; `first`: the first
+/// tangent.
 template <class U>
 auto carried_tangents(const Vec<U, 3>& before, Vec<U, 3> first, const Vec<U, 3>& normal) {
   first -= Vec<U, 3>(before + normal) * (dot(first, normal) / (U(1) + dot(before, normal)));

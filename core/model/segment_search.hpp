@@ -12,8 +12,9 @@ namespace stickslip {
 ///   moved  displacements likewise
 ///   last   of a side in contact with itself: per point, the patch that it faced in the last increment, or Patch::none
 ///
-/// A point less than 1 % of whose area faces the curve counts as facing nothing. Its distance is that to the nearest facet
-/// of the curve; of a side in contact with itself, to the nearest that it may touch, or else the size of the scene.
+/// A point less than 1 % of whose area faces the curve counts as facing nothing. Its distance is that to the nearest
+/// facet of the curve; of a side in contact with itself, to the nearest that it may touch, or else the size of the
+/// scene.
 void find_segments(const Model& model, int curve, const Points<double>& start, const Points<double>& moved,
                    const std::vector<int>& last, std::vector<Facing>& found);
 

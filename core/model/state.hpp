@@ -83,7 +83,8 @@ struct Increment {
   bool counted = false;  ///< whether all solutions of the increment were sought
   /// The last tangent of bodies that are not linear had such a determinant: the equilibrium is not stable.
   bool unstable = false;
-  /// Motions that bodies and closed contacts do not resist, when they were counted last (methods/stepping/stability.hpp).
+  /// Motions that bodies and closed contacts do not resist, when they were counted last
+  /// (methods/stepping/stability.hpp).
   int unresisted = 0;
   /// Other solutions. Their dissipation is that of the one taken.
   std::vector<State<T>> others;

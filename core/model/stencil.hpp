@@ -14,8 +14,8 @@ void for_each_place(const MasterCurve& curve, int patch, F&& f) {
     if (vertex != Patch::none) f(curve.places[vertex]);
 }
 
-/// Calls f(place) for each node of a point that faces `facing`, Model::contact_nodes[place], in the order of the weights
-/// of its geometry.
+/// Calls f(place) for each node of a point that faces `facing`, Model::contact_nodes[place], in the order of the
+/// weights of its geometry.
 template <class F>
 void for_each_place(const Model& model, const ContactPoint& point, const Facing& facing, F&& f) {
   if (point.curve < 0 || !model.slides_along_curves()) {

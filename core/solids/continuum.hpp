@@ -5,7 +5,7 @@
 ///
 /// H is the displacement gradient. In the plane and in space B_pq,ia = delta_ip dN_a/dX_q; dV is area times thickness,
 /// or a volume. Of revolution (X_0 = r, X_1 axial) the hoop strain H_22 = u_r / r joins them, and dV is area times the
-/// circumference 2 pi r. With mean dilatation, at small strain, the trace of H is replaced by its mean over the element,
+/// circumference 2 pi r. Mean dilatation, at small strain, replaces the trace of H by its mean over the element,
 ///
 ///   H -> H + (theta - tr H)/3 I,   theta = int tr H dV / V,
 ///

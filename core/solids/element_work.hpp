@@ -125,9 +125,9 @@ void add_by_gradient(const StateOfElement<Shape>& state, const Tensor<double, la
     by.exchange += P.full().trace() * state.weight + Q.full().trace() * state.motion;
 }
 
-/// The derivatives of the work of an element with mean dilatation at finite strain, by the Dual of the whole element. Its
-/// inputs are coordinates, depth and the law's numbers, and of a law that remembers motion and last memory. They are
-/// seeded in turns: a dual number of all that a hexahedron has takes minutes to compile.
+/// The derivatives of the work of an element with mean dilatation at finite strain, by the Dual of the whole element.
+/// Its inputs are coordinates, depth and the law's numbers, and of a law that remembers motion and last memory. They
+/// are seeded in turns: a dual number of all that a hexahedron has takes minutes to compile.
 template <class Shape, Kinematics kinematics, class Law>
 auto averaged_work(const Law& law, const Nodal<double, Shape>& coordinates, double depth,
                    const std::vector<StateOfElement<Shape>>& states) {

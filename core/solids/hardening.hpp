@@ -21,7 +21,8 @@ struct HardeningRow {
   Number strain, stress;
 };
 
-/// The branch that a flow takes. Derivatives at a tie between two take one that is given (sensitivity/ties/flow_tie.hpp).
+/// The branch that a flow takes. Derivatives at a tie between two take one that is given
+/// (sensitivity/ties/flow_tie.hpp).
 namespace flow_branch {
 inline constexpr int by_values = 0;    ///< that of its values
 inline constexpr int none = 1;         ///< stays within the bound

@@ -11,9 +11,10 @@
 /// across means e_22 = -lame / (lame + 2 G) (e_00 + e_11), at finite strain too, whose thickness follows: no unknown is
 /// added.
 ///
-/// It remembers e_p, or C_p^-1 - I, and a: in space seven numbers a point; in the plane and of revolution four, 00, 11, 01
-/// and a, since the component across the plane follows: flow keeps the volume. Differentiable but where a point is about to flow, or to stop, or ends at a
-/// corner of a table. Sources: [SH98] 3.3, 3.4; exponential map and logarithmic strain: [S92].
+/// It remembers e_p, or C_p^-1 - I, and a. In space these are seven numbers a point. In the plane and of revolution
+/// they are four, 00, 11, 01 and a: the component across the plane follows, because flow keeps the volume. Not
+/// differentiable if a point is about to flow, is about to stop, or ends at a corner of a table. Sources: [SH98] 3.3,
+/// 3.4; exponential map and logarithmic strain: [S92].
 #pragma once
 
 #include "core/algebra/implicit.hpp"

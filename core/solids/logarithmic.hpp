@@ -1,5 +1,5 @@
-/// Logarithm and exponential of symmetric tensors, written in what they differ from the unit tensor and from zero by, so
-/// that a small strain does not vanish beside one.
+/// Logarithm and exponential of symmetric tensors, written in what they differ from the unit tensor and from zero by,
+/// so that a small strain does not vanish beside one.
 ///
 /// Of the plane, 00 11 01,
 ///

@@ -5,11 +5,15 @@
 ///
 ///   lame = E nu / ((1+nu)(1-2nu)),  G = E / (2(1+nu)): Hooke's law at small H, for both U
 ///
-/// Both are written in H, so that a small strain does not vanish beside one. In space P = (G (F F^T - I) + J U' I) F^-T.
-/// In the plane j = J - 1 = tr H + det H, F^-T is the cofactor matrix over J, and J F - cof F = j F + (F - cof F). Of
-/// revolution the hoop stretch F_22 = 1 + h stands beside the plane, whose j and J these then are: the volume is J F_22.
+/// Both are written in H, so that a small strain does not vanish beside one:
+///
+///   space         P = (G (F F^T - I) + J U' I) F^-T
+///   plane         j = J - 1 = tr H + det H, F^-T is the cofactor matrix over J, J F - cof F = j F + (F - cof F)
+///   revolution    the same with the hoop stretch F_22 = 1 + h beside the plane, whose j and J these then are: the
+///                 volume is J F_22
+///
 /// An element with J <= 0 or F_22 <= 0 is inverted: its stress is not a number, so that no residual passes it.
-/// Differentiable where neither is. Source: [W06].
+/// Differentiable if neither holds. Source: [W06].
 ///
 /// In plane stress F_22 is the stretch of the thickness that leaves P_22 = 0,
 ///

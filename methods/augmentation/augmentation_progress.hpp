@@ -6,9 +6,9 @@
 ///   two-cycle     three successive updates undo each other to 1e-6
 ///   infeasible    the gap of a constraint does not change with its multiplier, three times in a row. The last change
 ///                 of the multiplier, over the local stiffness k, exceeds 1e-8 of the displacements, and the gap
-///                 changes by less than 1e-6 of it. Against a body of stiffness k the gap would change by about the whole, for
-///                 any rho. A multiplier that leaves the cone of its state does not count, since it ends in another
-///                 state
+///                 changes by less than 1e-6 of it. Against a body of stiffness k the gap would change by about the
+///                 whole, for any rho. A multiplier that leaves the cone of its state does not count, since it ends in
+///                 another state
 #pragma once
 
 #include <string>
@@ -69,9 +69,8 @@ class AugmentationProgress {
   bool is_exhausted() const { return same_states_ && idle_ >= 50; }
   /// Whether q < 0.9. Such a map soon reaches rounding, so updates that do not fall are rounding.
   bool contracts_fast() const { return contraction_ > 0 && contraction_ < 0.9; }
-  const std::vector<double>& violations() const {
-    return violations_;
-  }  ///< per point: largest constraint error, length
+  /// Per point: largest constraint error, length.
+  const std::vector<double>& violations() const { return violations_; }
   const std::vector<double>& last_violations() const { return last_violations_; }
   double violation() const {
     return violations_.empty() ? 0 : *std::max_element(violations_.begin(), violations_.end());

@@ -85,9 +85,9 @@ struct EquilibriumTask {
   const Compliance<T>* compliance = nullptr;
   /// Arc of a step whose time is an unknown; nullptr: the time is given.
   const Arc* arc = nullptr;
-  /// Whether the overdamped motion ended in the start values. They count as solved if only rounding is left of their
-  /// residuals, for nothing but rounding moves a body that is free, or free to slide. Else they are improved until that
-  /// stops.
+  /// True if the start values are where the overdamped motion came to rest. They are accepted at once if their
+  /// residuals are only rounding, since iterating would move a free body by rounding. Otherwise Newton's method goes on
+  /// as usual.
   bool rests = false;
   /// Whether a tangent is made of start values that count as solved, of bodies whose tangent changes: its determinant
   /// tells whether they are stable.
@@ -130,10 +130,9 @@ struct Equilibrium {
 
 /// Solves one equilibrium from start values, in up to three attempts: Newton's method; if bodies or geometry are
 /// nonlinear and it does not converge in 15 iterations, the sequence; if that fails, Newton's method with all its
-/// iterations. After an equilibrium by the sequence, the run begins the next ones with it, until it fails. Where
-/// tangents are condensed, points change their branches at the price of a dense factor. Then an increment whose
-/// multipliers are unknown begins with the sequence too, and what follows in an increment, as after an augmentation,
-/// with Newton's method.
+/// iterations. After an equilibrium by the sequence, the run begins the next ones with it, until it fails. If tangents
+/// are condensed, changing branches costs only a dense factor: then an increment of the monolithic method tries the
+/// sequence first, and later solves of an increment begin with Newton's method.
 template <class T>
 Equilibrium<T> find_equilibrium(Engine<T>& engine, const EquilibriumTask<T>& task, Unknowns<T> start,
                                 const NewtonOptions& options, Account& account);

@@ -1,7 +1,7 @@
 /// Ties of points on surfaces in space: at the end of an increment they face an edge or a corner at which patches meet.
 ///
-/// With the derivatives of its coordinates (s, t) on the patch that it faces, the foot of a point leaves this patch over
-/// an edge k that it is on iff s D(beyond_edge k) > 0. Then it faces the patch behind that edge.
+/// With the derivatives of its coordinates (s, t) on the patch that it faces, the foot of a point leaves this patch
+/// over an edge k that it is on iff s D(beyond_edge k) > 0. Then it faces the patch behind that edge.
 ///
 ///   smooth   the normal goes on, and the curvature jumps (Catmull-Rom), or on facets the way in which weights change;
 ///            or the point carries no traction: each side has the derivative of its patch

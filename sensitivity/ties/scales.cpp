@@ -20,8 +20,8 @@ double traction_scale(const Model& model, const Slots<double>& slots, const Stat
 RateScales::RateScales(const Model& model, const Slots<double>& slots, const ParameterBlock& block,
                        const State<Direction>& at, const ByDirection& per_size, double largest)
     : per_parameter(per_size), of_bodies(ByDirection::Zero()), of_tractions(ByDirection::Zero()) {
-  constexpr double rigid =
-      1e-3;  // what a rigid motion may leave of strains, of bodies a thousand times as long as wide
+  // What a rigid motion may leave of strains, of bodies a thousand times as long as wide.
+  constexpr double rigid = 1e-3;
   for (const auto& u : at.displacement) of_bodies = of_bodies.max(u.d.abs());
   of_mesh = of_bodies;
   for (const auto& x : block.slots.points.reshaped()) of_mesh = of_mesh.max(x.d.abs());

@@ -32,8 +32,8 @@ struct RateScales {
   ByDirection per_parameter;  ///< 1 over the size of each parameter; 0: not known
   ByDirection of_bodies;      ///< length: what a motion leaves of strains, 1e-3 of its largest derivative
   ByDirection of_mesh;        ///< the same of displacements and of places of nodes
-  /// Force per area: the largest of the derivatives of all tractions, of all motions and of `of_bodies` times k / A, and
-  /// of the largest traction of the run over the size of the parameter.
+  /// Force per area: the largest of the derivatives of all tractions, of all motions and of `of_bodies` times k / A,
+  /// and of the largest traction of the run over the size of the parameter.
   ByDirection of_tractions;
 
   /// `at`: the state with its derivatives; `largest`: traction_scale() of the run so far.

@@ -162,8 +162,8 @@ class TieSearch {
   /// Takes the choices with the least contradiction. Both branches of a point can be contradicted only by what the
   /// tolerance of the solution leaves of the tie.
   bool at_rounding() {
-    constexpr double most =
-        1e3;  // 1e-7 of the derivatives: a tie is recognised to 1e-8, and its derivative errs as much
+    // 1e-7 of the derivatives: a tie is recognised to 1e-8, and its derivative errs as much.
+    constexpr double most = 1e3;
     if (!(least_ <= most)) return false;
     at_ = best_;
     return follow_choices();

@@ -12,8 +12,7 @@
 namespace stickslip::checkpoints_test {
 namespace {
 
-// --- the same bits
-// ----------------------------------------------------------------------------------------------------
+// --- the same bits ---------------------------------------------------------------------------------------------------
 
 std::vector<Method> all_schemes() {
   using S = UzawaAL::Sensitivity;
@@ -111,8 +110,7 @@ TEST(Checkpoints, LeaveTheGradientOfStepsThatAreCut) {
   EXPECT_GT(few.trajectory.counters.cutbacks, 0);
 }
 
-// --- memory
-// -------------------------------------------------------------------------------------------------------------
+// --- memory ----------------------------------------------------------------------------------------------------------
 
 /// Bytes that a process took beyond what it began with, at its most. `work` runs in a process of its own.
 template <class Work>

@@ -21,8 +21,7 @@ Body rubber(Body body, Scene& s, const std::string& name, double E) {
   return body;
 }
 
-// --- A13: two blocks, pressed on one another by meshes that do not match
-// ----------------------------------------------
+// --- A13: two blocks, pressed on one another by meshes that do not match ---------------------------------------------
 
 Scene stacked(double stretch, double mu) {
   Scene s;
@@ -59,8 +58,7 @@ TEST(FiniteCurves, PassAUniformPressureBetweenNestedMeshes) {
       }
 }
 
-// --- a die pressed into a slab and dragged along it
-// -------------------------------------------------------------------
+// --- a die pressed into a slab and dragged along it ------------------------------------------------------------------
 
 /// `turned`: the whole scene about the origin, radians.
 Scene ironing(Smoothing smoothing, double mu = 0.3, double turned = 0) {
@@ -227,8 +225,7 @@ TEST(FiniteCurves, DerivativesEqualTheComplexStepAndTheAdjoint) {
     scenes::expect_derivatives_in_both_modes(ironing(Smoothing::catmull_rom, mu), MonolithicAL{});
 }
 
-// --- what needs no smoothing, corners and ends
-// ------------------------------------------------------------------------
+// --- what needs no smoothing, corners and ends -----------------------------------------------------------------------
 
 /// A point pressed on an edge by a force, and led along it by the anchor of a spring, over its end.
 Scene led_over_the_edge(bool rigid) {

@@ -19,8 +19,7 @@ Obstacle plane(const std::string& name, std::array<Number, 2> point, std::array<
   return {name, Plane{{point[0], point[1]}, {normal[0], normal[1]}}};
 }
 
-// --- A13: a block between a moved support and a plane, stretched by l1 across
-// -----------------------------------------
+// --- A13: a block between a moved support and a plane, stretched by l1 across ----------------------------------------
 
 Scene patch(double stretch, NeoHookean::Volumetric kind) {
   Scene s;
@@ -71,8 +70,7 @@ TEST(FinitePatch, IsThatOfItsOwnStretchToRounding) {
   }
 }
 
-// --- A15: half of a von Mises truss, pushed through by an obstacle
-// ----------------------------------------------------
+// --- A15: half of a von Mises truss, pushed through by an obstacle ---------------------------------------------------
 
 Scene truss(double push) {
   Scene s;
@@ -176,8 +174,7 @@ TEST(Truss, JustBelowItsLimitPointHasTheSlopeOfTheClosedForm) {  // C27
   }
 }
 
-// --- a point that a spring leads around a disk: large sliding on a normal that turns
-// ----------------------------------
+// --- a point that a spring leads around a disk: large sliding on a normal that turns ---------------------------------
 
 /// The anchor goes around the centre by an angle, at `radius`; the disk has the radius 1.
 Scene led_around(double mu, double radius, double angle, int steps) {
@@ -219,8 +216,7 @@ TEST(LedAround, StaysBehindItsAnchorByTheAngleOfFriction) {
     }
 }
 
-// --- derivatives
-// ------------------------------------------------------------------------------------------------------
+// --- derivatives -----------------------------------------------------------------------------------------------------
 
 /// A block pressed onto a rigid disk from above and dragged along it: it sticks, slips, opens at its ends, and the
 /// normals turn.

@@ -13,8 +13,7 @@ namespace {
 using namespace scenes;
 using Kind = Response::Kind;
 
-// --- A16 (1): a bar pushed against a wall beyond its yield stress and withdrawn
-// ---------------------------------------
+// --- A16 (1): a bar pushed against a wall beyond its yield stress and withdrawn --------------------------------------
 
 /// E = 1000, hardening 100, yield 10, length and area 1, gap .005: pushed by .035 in seven steps, withdrawn in
 /// fourteen.
@@ -138,8 +137,7 @@ TEST(Plasticity, OfAThickCylinderReachesTheRadiusOfTheClosedForm) {
   EXPECT_GE(plastic, 5);
 }
 
-// --- derivatives
-// ------------------------------------------------------------------------------------------------------
+// --- derivatives -----------------------------------------------------------------------------------------------------
 
 struct Setting {
   Space space;

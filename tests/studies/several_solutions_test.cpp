@@ -248,8 +248,8 @@ TEST(FoldedElements, AreToldWhereNoIntegrationPointSeesThem) {
   }
 }
 
-/// A column whose ends stay level buckles sideways at a strain of pi^2 / 12 (width / height)^2, which is 0.82 % here, and
-/// in its second shape at four times that. Beyond the first the straight column is an equilibrium that is unstable.
+/// A column whose ends stay level buckles sideways at a strain of pi^2 / 12 (width / height)^2, which is 0.82 % here,
+/// and in its second shape at four times that. Beyond the first the straight column is an equilibrium that is unstable.
 TEST(UnstableSteps, AreTold) {
   json scene = json::parse(R"({
     "strain": "finite",
@@ -267,11 +267,12 @@ TEST(UnstableSteps, AreTold) {
   }
 }
 
-/// A slender bar is shortened by 1.6 %, beyond four of its buckling loads, and a small force shows it the way aside. The
-/// straight shape, or one near it, is an equilibrium too; of it the determinant has the sign of a stable one. `floor`:
-/// whether there is one below, which the bar does not touch. Elastica with clamped ends, small slopes: the middle moves
-/// by 2 / pi times the root of length times shortening. What the bar bears without bending, pi^2 / 3 (thickness / length)^2
-/// = .206 %, is no part of that shortening. Slopes of 14 degrees change it by about 1 %, the small force by less.
+/// A slender bar is shortened by 1.6 %, beyond four of its buckling loads, and a small force shows it the way aside.
+/// The straight shape, or one near it, is an equilibrium too; of it the determinant has the sign of a stable one.
+/// `floor`: whether there is one below, which the bar does not touch. Elastica with clamped ends, small slopes: the
+/// middle moves by 2 / pi times the root of length times shortening. That shortening is without what the bar bears
+/// straight, pi^2 / 3 (thickness / length)^2 = .206 %. Slopes of 14 degrees change it by about 1 %, the small force by
+/// less.
 TEST(UnstableSteps, AreCutToFollowTheBodiesAsTheyBuckle) {
   const auto bar = [](int steps, bool floor) {
     json scene = json::parse(R"({
@@ -304,8 +305,8 @@ TEST(UnstableSteps, AreCutToFollowTheBodiesAsTheyBuckle) {
 }
 
 /// A straight bar carries a small block that does not touch it, and is shortened beyond one after the other of its
-/// buckling loads. Nothing pushes it aside, so it stays straight, and one motion more is not resisted. Most of its top is
-/// away from the block: where tangents are condensed, these rows are eliminated before those that points touch.
+/// buckling loads. Nothing pushes it aside, so it stays straight, and one motion more is not resisted. Most of its top
+/// is away from the block: where tangents are condensed, these rows are eliminated before those that points touch.
 TEST(UnstableSteps, HaveTheSameUnresistedMotionsByEveryEngine) {
   json scene = json::parse(R"({
     "strain": "finite",

@@ -120,8 +120,8 @@ TEST(SlowShallowIroning, ByEveryMethodOnSegmentsLiesWithinThePublishedCurvesAndI
     EXPECT_NEAR(forces_at(result, 1.5)[0], V, same * V);
     EXPECT_NEAR(forces_at(result, 1.5)[1], H, same * V);
   }
-  const auto turned =
-      solve("monolithic_al", "slab.top", "die.face");  // the other side as the slave: another mesh error
+  // The other side as the slave: another mesh error.
+  const auto turned = solve("monolithic_al", "slab.top", "die.face");
   check(turned);
   EXPECT_NEAR(forces_at(turned, 1.5)[0], V, 0.01 * V);
   EXPECT_NEAR(forces_at(turned, 1.5)[1], H, 0.01 * V);

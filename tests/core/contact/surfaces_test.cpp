@@ -105,8 +105,8 @@ TEST(AgainstFacet, HasWeightsThatReproduceTheGapVector) {
 TEST(AgainstVertex, HasTheBisectorWhateverTheLengthsOfItsFacets) {
   const Point v(1, 1);
   for (double left : {0.01, 1.0, 30.0}) {
-    const auto g =
-        against_vertex<double>(Point(1.5, 1.5), Point(1, 1 - 2), v, Point(1 - left, 1));  // a square's corner
+    // A square's corner.
+    const auto g = against_vertex<double>(Point(1.5, 1.5), Point(1, 1 - 2), v, Point(1 - left, 1));
     expect_vector(g, std::sqrt(0.5), std::sqrt(0.5));
     EXPECT_NEAR(g.gap, std::sqrt(0.5), rounding);
     EXPECT_EQ(g.weights, (Vec<double, 2>(1, -1)));
