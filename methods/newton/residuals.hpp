@@ -43,7 +43,8 @@ struct Evaluation {
   Vector<T> rows_u, rows_l;
   Residuals residuals;
   RunScales scales;  ///< largest values of the run and of this iterate
-  /// No load acts, bodies bear nothing, the run has had no force, and contact has what the rounding of gaps makes of rho.
+  /// No load acts, bodies bear nothing, the run has had no force, and contact has what the rounding of gaps makes of
+  /// rho.
   bool forceless = false;
 };
 

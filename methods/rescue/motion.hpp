@@ -9,12 +9,13 @@
 /// regular, and for a large alpha the points know little of each other (alpha: methods/rescue/motion_pace.hpp). After
 /// each step the method tries without the term: nothing but a solution of the unmodified equations counts.
 ///
-/// Where a body floats, as nothing holds it and nothing presses on it where the increment begins, bodies are moved so
-/// first, and D is theirs alone whom supports alone do not hold: what floats may be pressed against any of them, and a
-/// contact of one node lets each of them roll. Until something touches a body it stays where it is. As long as what
-/// touches bodies moves them on, the method does not try without the term. A body that floats still keeps it there, for
-/// the tangent of what nothing holds is singular; the solution counts if it bears no force. Proximal point method: R. T.
-/// Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898; measured against others in core/README.md.
+/// If a body floats, as nothing holds it and nothing presses on it where the increment begins, bodies are moved so
+/// first. Only bodies that their supports alone leave free are damped then, also those that do not float: what floats
+/// may be pressed against any of them, and a contact of one node lets each of them roll. Until something touches a body
+/// it stays where it is. As long as what touches bodies moves them on, the method does not try without the term. A body
+/// that floats still keeps it there, for the tangent of what nothing holds is singular; the solution counts if it bears
+/// no force. Proximal point method: R. T. Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898; measured against
+/// others in docs/decisions.md.
 #pragma once
 
 #include "methods/rescue/motion_pace.hpp"
@@ -78,7 +79,8 @@ class OverdampedMotion {
   }
 
  private:
-  /// A step of the motion from `place` to the next, and from there, where it may rest, the method. Usable: the solution.
+  /// A step of the motion from `place` to the next, and from there, where it may rest, the method. Usable: the
+  /// solution.
   Increment<T> move_on(State<T>& place) {
     auto moved = step(place);
     const double length = distance(place, moved.state);
@@ -157,8 +159,8 @@ class OverdampedMotion {
 
 /// Follows the overdamped motion from `previous` until the method solves the unmodified equations. `damped`: per body,
 /// whether D is its own; empty: all are damped, and the method tries after each step. `several`: there may be more
-/// solutions. Then the solution must have the branches of the step before. Neither the solution, nor any step
-/// but the first, may then be farther away than all the way so far: it could as well belong to another solution. The
+/// solutions. Then the solution must have the branches of the step before. No step but the first may then be longer
+/// than the way covered so far, nor the solution farther from the last step: it could belong to another branch. The
 /// history holds all iterations. Where no attempt succeeds the status is that of the last.
 template <class T>
 Increment<T> follow_motion(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double time,

@@ -12,8 +12,16 @@
 ///   5  motion    the overdamped motion of all bodies from the last state to rest
 ///   6  branches  those of 4 where repeated constraints hide some, if nothing else was found
 ///
-/// A step that this leaves without a solution is cut (methods/stepping/step.hpp). All that one step spends in vain,
-/// parts of it included, is bounded (methods/rescue/work_bound.hpp); once that is spent, 4 to 6 are left out.
+/// If the method found nothing, 4 to 6 are left out in three cases: the bound of work is spent; supports drive facets
+/// through one another; or bodies are nonlinear, none of them is free, and the part is longer than a fifth of the step.
+///
+/// The levels below and above an increment:
+///
+///   corner       points that go to and fro between two patches are kept on one (methods/rescue/kept_patches.hpp)
+///   equilibrium  Newton's method, the sequence, Newton's method with all its iterations (find_equilibrium)
+///   step         parts, down to 1/1024 (methods/stepping/step.hpp). What all of them spend in vain is bounded
+///                (methods/rescue/work_bound.hpp)
+///   path         arcs are shortened (methods/stepping/path.hpp); of this page only an increment at t = 0 is tried
 ///
 /// There may be several solutions where the determinant of a tangent on the way has another sign, where friction may
 /// hold a body between surfaces, and where mu reaches a critical value. Then the solution is taken in whose branches

@@ -236,8 +236,8 @@ class Sequence {
     std::vector<double> distances;
     const Vector<T> seen = seen_by_points(unknowns_.multiplier);
     for (std::size_t p = 0; p < wanted.size(); ++p) {
-      const auto from =
-          task_.has_multiplier_rows() ? branches_[p] : ContactState::open;  // (open: distances are gaps times rho)
+      // (from open, distances are gaps times rho)
+      const auto from = task_.has_multiplier_rows() ? branches_[p] : ContactState::open;
       const auto trial = trial_after(task_.contact, static_cast<int>(p), unknowns_.multiplier, seen, from, field);
       const bool opens = branches_[p] == ContactState::open || wanted[p] == ContactState::open;
       distances.push_back(std::abs(opens ? trial.pressure : trial.tangential - trial.bound));

@@ -238,8 +238,8 @@ bool has_repeated_constraints(const ContactProblem& problem) {
 }
 
 bool is_feasible(const ContactProblem& problem) {
-  ContactProblem smooth =
-      problem;  // frictionless: solutions minimise a strictly convex energy, if any motion is feasible
+  // (frictionless: solutions minimise a strictly convex energy, if any motion is feasible)
+  ContactProblem smooth = problem;
   for (auto& point : smooth.points) point = {point.normal};
   const auto solutions = all_solutions(smooth, 1, Vector<double>::Zero(problem.load.size()));
   return !solutions || !solutions->empty();

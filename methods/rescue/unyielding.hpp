@@ -37,10 +37,10 @@ std::vector<int> shared_points(const Model& model, const Slots<T>& slots, const 
 /// A point whose overlap no stiffness removes, in words; empty if there is none.
 ///
 /// One augmentation from the solution finds it, with 1e8 nodal stiffnesses. Tangential tractions stay, and points are
-/// closed and opened until tractions and gaps agree. With present geometry Newton's method goes on until that is solved.
-/// An overlap to which bodies can yield falls to some 1e-8 of itself.
-/// An overlap that supports or other contacts prescribe stays, there or elsewhere; its force is stiffness times
-/// overlap. The augmentation is skipped unless points share a node or are held by supports.
+/// closed and opened until tractions and gaps agree. With present geometry Newton's method goes on until that is
+/// solved. An overlap to which bodies can yield falls to some 1e-8 of itself. An overlap that supports or other
+/// contacts prescribe stays, there or elsewhere; its force is stiffness times overlap. The augmentation is skipped
+/// unless points share a node or are held by supports.
 template <class T>
 std::string unyielding_point(Run<T>& run, const ContactInput<T>& found, const Equilibrium<T>& equilibrium) {
   constexpr double stiff = 1e8, left = 1e-5, negligible = 1e-9;

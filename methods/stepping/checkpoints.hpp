@@ -96,8 +96,8 @@ class Checkpoints {
   }
   /// Last step of a stretch.
   std::size_t last_step(const Start& start) const {
-    return std::min(
-        {start.step + plan_.stride - 1, plan_.thinned, ends_.size() - 2});  // (the last step reached is whole)
+    // (the last step reached is whole)
+    return std::min({start.step + plan_.stride - 1, plan_.thinned, ends_.size() - 2});
   }
   /// Bytes of the factors that stretches begin with.
   long bytes() const {

@@ -4,9 +4,9 @@
 /// equilibrium still, and Newton's method goes to it, though the bar would have bent aside. The sign of the tangent's
 /// determinant (Engine::reversed) does not tell: of an even number of motions that nothing resists it is that of a
 /// stable equilibrium. So they are counted, of the bodies' tangent with a stiff spring at each contact that is closed,
-/// along its normal, and along the tangents too if it sticks. Tractions turn with the normals: without that, a ring that
-/// is pressed from outside would seem free to turn. What friction couples while a point slips is left out, as is what is
-/// not symmetric.
+/// along its normal, and along the tangents too if it sticks. Tractions turn with the normals: without that, a ring
+/// that is pressed from outside would seem free to turn. What friction couples while a point slips is left out, as is
+/// what is not symmetric.
 #pragma once
 
 #include "core/model/point_tangent.hpp"
@@ -70,8 +70,8 @@ bool may_buckle(const Run<T>& run) {
                      [](const auto& body) { return is_continuum(body.mesh.shape); });
 }
 
-/// Number of motions that nothing resists in the equilibrium of an increment, of which the engine made the last tangent.
-/// Nothing if it is not known, or if there is no equilibrium.
+/// Number of motions that nothing resists in the equilibrium of an increment, of which the engine made the last
+/// tangent. Nothing if it is not known, or if there is no equilibrium.
 template <class T>
 std::optional<int> motions_unresisted(Run<T>& run, const State<T>& previous, const Increment<T>& increment) {
   if (!increment.usable() || !may_buckle(run)) return std::nullopt;

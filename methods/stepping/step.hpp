@@ -24,8 +24,8 @@ bool drives_together(const Run<T>& run, double start, double end, const Incremen
   return cross_between(model, slots, start, end);
 }
 
-/// Displacements that are not finite are no solution. (An engine may eliminate dofs that no residual contains.) Nor is a
-/// state that presses on a folded side.
+/// Displacements that are not finite are no solution. (An engine may eliminate dofs that no residual contains.) Nor is
+/// a state that presses on a folded side.
 template <class T>
 void refuse(const Run<T>& run, Increment<T>& increment) {
   if (!increment.usable()) return;
