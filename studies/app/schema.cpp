@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/app/schema_texts.hpp"
+#include "studies/input/described.hpp"
 #include "studies/input/friction_laws.hpp"
 #include "studies/input/materials.hpp"
 #include "studies/input/mesh_kinds.hpp"
@@ -17,15 +18,6 @@ namespace {
 using Schema = nlohmann::ordered_json;
 
 constexpr const char* draft = "https://json-schema.org/draft/2020-12/schema";
-
-/// {"KEY": {...}} with one of the kinds' keys.
-template <class Kinds>
-Schema one_of(const Kinds& kinds) {
-  Schema properties = Schema::object();
-  for (const auto& kind : kinds) properties[kind.key] = kind.schema();
-  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
-          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", properties}};
-}
 
 /// The kinds of obstacles, one of which goes with what all of them may have.
 void add_obstacle_kinds(Schema& obstacle) {
@@ -56,7 +48,9 @@ Schema scene_schema() {
   definitions.update(Schema::parse(schema_texts::motion));
   definitions["mesh"] = mesh_schema();
   definitions["plane_mesh"] = plane_mesh_schema();
-  definitions["material"] = one_of(material_kinds());
+  Schema materials;
+  for (const auto& kind : material_kinds()) materials[kind.key] = kind.schema();
+  definitions["material"] = one_of(materials);
   definitions["response"] = response_schema();
   definitions["method"] = method_schema(OptionLists::refused);
   Schema schema = document("stickslip scene", schema_texts::scene, {"bodies", "time"}, definitions);

@@ -21,13 +21,7 @@ const char* const common = R"json({
             "$ref": "#/$defs/table", "examples": [[[0, 0], [1, 0.1]]]},
           "repeat": {"description": "how often the table is run through, one time right after the other",
             "$ref": "#/$defs/count", "default": 1, "examples": [1000]}}}]},
-  "side": {"title": "SIDE", "type": "string"},
-  "box_grade": {"type": "object", "title": "one of the following", "minProperties": 1, "maxProperties": 1,
-    "additionalProperties": false, "examples": [{"bottom": 8}], "properties": {
-      "left": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]},
-      "right": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]},
-      "bottom": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]},
-      "top": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]}}}
+  "side": {"title": "SIDE", "type": "string"}
 })json";
 
 const char* const motion = R"json({

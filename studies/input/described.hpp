@@ -4,6 +4,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <tuple>
+#include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "core/algebra/described.hpp"
 #include "core/mesh/extruded.hpp"
@@ -11,6 +14,28 @@
 #include "studies/input/scene_reading.hpp"
 
 namespace stickslip {
+
+/// Calls f(std::type_identity<X>()) for each alternative X of a variant.
+template <class Variant, class F>
+void for_each_alternative(F&& f) {
+  [&]<class... X>(std::type_identity<std::variant<X...>>) {
+    (f(std::type_identity<X>()), ...);
+  }(std::type_identity<Variant>());
+}
+
+/// What `make` makes of each alternative of a variant, in their order.
+template <class Variant, class Make>
+auto list_of(Make make) {
+  return [&]<class... X>(std::type_identity<std::variant<X...>>) {
+    return std::vector{make(std::type_identity<X>())...};
+  }(std::type_identity<Variant>());
+}
+
+/// JSON Schema of {"KEY": ...} with one of the keys.
+inline nlohmann::ordered_json one_of(const nlohmann::ordered_json& properties) {
+  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
+          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", properties}};
+}
 
 /// The parts of a schema that say the keys of an object.
 struct ObjectSchema {
@@ -197,23 +222,16 @@ nlohmann::ordered_json schema_of_key(const Key<S, Member, How>& key, const S& st
   if constexpr (HasExample<How>) own["examples"] = nlohmann::ordered_json::array({as_json(key.how.example)});
   return own;
 }
-/// Of the four sides of a grid it is a definition.
 template <class S, std::size_t n>
 nlohmann::ordered_json schema_of_key(const Key<S, Number, Grade<S, n>>& key, const S&) {
   using Schema = nlohmann::ordered_json;
-  if (n == grid_sides.size()) return {{"$ref", "#/$defs/box_grade"}, {"description", key.about}};
   const Schema example = as_json(key.how.example);
   Schema sides = Schema::object();
   for (const char* side : key.how.sides)
     sides[side] = {{"description", "ratio"}, {"$ref", "#/$defs/positive"}, {"examples", Schema::array({example})}};
-  return {{"description", key.about},
-          {"type", "object"},
-          {"title", "one of the following"},
-          {"examples", Schema::array({{{key.how.sides[0], example}}})},
-          {"minProperties", 1},
-          {"maxProperties", 1},
-          {"additionalProperties", false},
-          {"properties", sides}};
+  Schema own{{"description", key.about}, {"examples", Schema::array({{{key.how.sides[0], example}}})}};
+  own.update(one_of(sides));
+  return own;
 }
 
 template <class S, class F>
@@ -245,6 +263,12 @@ std::optional<S> read_described(const JsonNode& node, SceneReading& reading) {
       detail::read_key(node, reading, key.key, member, key.how);
   });
   return read;
+}
+
+/// The same as one of the alternatives of a variant.
+template <class Variant, Described S>
+std::optional<Variant> read_as(const JsonNode& node, SceneReading& reading) {
+  return read_described<S>(node, reading);
 }
 
 template <Described S>

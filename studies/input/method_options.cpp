@@ -28,13 +28,9 @@ std::vector<std::string> option_names() {
 }
 
 /// Calls f(M{}) for each method of the closed set.
-template <class F, std::size_t... I>
-void for_each_method(F&& f, std::index_sequence<I...>) {
-  (f(std::variant_alternative_t<I, Method>{}), ...);
-}
 template <class F>
 void for_each_method(F&& f) {
-  for_each_method(std::forward<F>(f), std::make_index_sequence<std::variant_size_v<Method>>{});
+  for_each_alternative<Method>([&]<class M>(std::type_identity<M>) { f(M{}); });
 }
 
 /// Reads the options of one object.
@@ -277,8 +273,7 @@ nlohmann::ordered_json method_schema(OptionLists lists) {
                                      {"additionalProperties", false},
                                      {"properties", options}};
   });
-  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
-          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", methods}};
+  return one_of(methods);
 }
 
 json to_json(const Method& method) {
