@@ -3,13 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/app/schema_texts.hpp"
-#include "studies/input/described.hpp"
 #include "studies/input/friction_laws.hpp"
 #include "studies/input/materials.hpp"
 #include "studies/input/mesh_kinds.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/input/response_kinds.hpp"
+#include "studies/input/small_objects.hpp"
 #include "studies/sweep/closed_forms.hpp"
 
 namespace stickslip {
@@ -56,6 +56,8 @@ Schema scene_schema() {
   Schema schema = document("stickslip scene", schema_texts::scene, {"bodies", "time"}, definitions);
   add_obstacle_kinds(schema["properties"]["obstacles"]["additionalProperties"]);
   Schema& contact = schema["properties"]["contacts"]["additionalProperties"]["properties"];
+  schema["properties"][LinearSolverObject::key] = schema_of_object<LinearSolverObject>();
+  schema["properties"][SensitivityObject::key] = schema_of_object<SensitivityObject>();
   for (Schema& law : friction_schemas()) contact["friction"]["anyOf"].push_back(std::move(law));
   return schema;
 }
@@ -67,6 +69,8 @@ Schema study_schema() {
   Schema schema = document("stickslip study", schema_texts::study, Schema::array(), definitions);
   schema["oneOf"] = {{{"required", {"scene"}}}, {{"required", {"scenes"}}}};
   schema["properties"]["reference"]["items"]["properties"]["analytic"]["enum"] = analytic_names();
+  schema["properties"][TimingObject::key] = schema_of_object<TimingObject>();
+  schema["properties"]["error_budget"]["anyOf"][1]["properties"] = schema_of_keys<ErrorBudgetObject>().properties;
   return schema;
 }
 

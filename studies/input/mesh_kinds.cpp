@@ -117,9 +117,10 @@ std::optional<MeshDescription> read_gmsh(const JsonNode& mesh, const JsonNode& n
 
 namespace detail {
 
-void read_key(const JsonNode& object, SceneReading& reading, const char* key, PlaneMesh& to, const MeshInPlane&) {
-  const auto given = object.find(key);
+void read_key(const KeyAt& at, PlaneMesh& to, const MeshInPlane&) {
+  const auto given = at.find();
   if (!given) return;
+  SceneReading& reading = at.reading;
   const auto named =
       given->kind(list_of<PlaneMesh>([]<class M>(std::type_identity<M>) { return std::string(M::key); }));
   if (!named) return;
