@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <sstream>
 
+#include "studies/io/atomic_file.hpp"
 #include "studies/report/report.hpp"
 
 namespace stickslip::recorded {
@@ -121,10 +121,7 @@ void StudyOnDisk::record(const json& study, const std::vector<json>& cells, cons
 
 std::string StudyOnDisk::page() {
   write_report(directory_);
-  std::ifstream in(directory_ / "report.html");
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
+  return read_file(directory_ / "report.html");
 }
 
 report::Study StudyOnDisk::study() { return report::read_study(directory_); }
