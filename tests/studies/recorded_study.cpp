@@ -1,8 +1,5 @@
 #include "tests/studies/recorded_study.hpp"
 
-#include <fmt/core.h>
-#include <unistd.h>
-
 #include <fstream>
 
 #include "studies/io/atomic_file.hpp"
@@ -101,16 +98,6 @@ json picture() {
           {"bodies", {0, 0}},
           {"body_names", {"block"}}};
 }
-
-StudyOnDisk::StudyOnDisk() {
-  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  directory_ = std::filesystem::path(testing::TempDir()) /
-               fmt::format("stickslip_{}_{}_{}", ::getpid(), test->test_suite_name(), test->name());
-  std::filesystem::remove_all(directory_);
-  std::filesystem::create_directories(directory_);
-}
-
-StudyOnDisk::~StudyOnDisk() { std::filesystem::remove_all(directory_); }
 
 void StudyOnDisk::record(const json& study, const std::vector<json>& cells, const json& picture) {
   std::ofstream(directory_ / "study.json") << study.dump();

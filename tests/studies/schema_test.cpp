@@ -4,7 +4,6 @@
 #include "studies/app/schema.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -17,6 +16,7 @@
 #include "studies/input/scene_reader.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/sweep/study_reader.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip {
 namespace {
@@ -292,8 +292,8 @@ TEST(Schema, NamesTheDefaultsOfTheReader) {
 #ifdef STICKSLIP_PYTHON_WITH_JSONSCHEMA
 /// Runs Python's jsonschema: every document of `valid` must pass, every one of `invalid` must not.
 void validate(const json& schema, const json& valid, const json& invalid) {
-  const fs::path folder = fs::temp_directory_path() / ("stickslip_schema_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
+  const TemporaryFolder own;
+  const fs::path& folder = own.path;
   std::ofstream(folder / "all.json") << json{{"schema", schema}, {"valid", valid}, {"invalid", invalid}};
   std::ofstream(folder / "check.py") << R"(
 import json, sys
@@ -308,7 +308,6 @@ sys.exit("\n".join(wrong) if wrong else 0)
   const std::string command = std::string("\"") + STICKSLIP_PYTHON_WITH_JSONSCHEMA + "\" \"" +
                               (folder / "check.py").string() + "\" \"" + (folder / "all.json").string() + "\"";
   EXPECT_EQ(std::system(command.c_str()), 0);
-  fs::remove_all(folder);
 }
 
 TEST(Schema, TakesEveryShippedFileAndRefusesUnknownKeysInIt) {
