@@ -353,7 +353,7 @@ int report_command(const ReportArguments& arguments) {
   }
   check_records(directory);
   const auto stored = read_rows(directory, [](json& row) { row = json::object(); });  // what counts is which there are
-  if (!stored.sound()) std::cerr << printable("note: " + directory + "/results.jsonl: " + stored.faults()) << '\n';
+  tell_faults(stored, directory);
   if (stored.rows.empty())
     throw InputFault(directory + ": there are no rows in results.jsonl; run `stickslip study` with --resume first");
   write_report(directory, pdfs);

@@ -17,11 +17,14 @@
 #include "studies/io/input_fault.hpp"
 #include "studies/io/printing.hpp"
 #include "studies/report/disagreement.hpp"
+#include "studies/report/look_up.hpp"
 
 namespace stickslip {
 namespace {
 
 using nlohmann::json;
+using report::at, report::object_at, report::number_at, report::text_at;
+
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// What is not compared, and most of a row.
@@ -30,7 +33,7 @@ void drop_curves(json& row) {
 }
 
 /// A cell by what it is.
-std::pair<std::string, std::string> name_of(const json& row) { return {row.value("label", ""), variant_text(row)}; }
+std::pair<std::string, std::string> name_of(const json& row) { return {text_at(row, "label"), variant_text(row)}; }
 
 std::map<std::pair<std::string, std::string>, const json*> by_name(const RowsById& rows) {
   std::map<std::pair<std::string, std::string>, const json*> out;
@@ -54,7 +57,7 @@ void compare_counts(const json& before, const json& after, std::vector<Change>& 
 void compare_errors(const json& before, const json& after, const std::string& kind, const ComparisonBands& bands,
                     std::vector<Change>& changes) {
   for (const auto& [name, error] : before.items()) {
-    const json other = after.value(name, json());
+    const json& other = at(after, name);
     const double a = error.is_number() ? std::abs(error.get<double>()) : infinite;
     const double b = other.is_number() ? std::abs(other.get<double>()) : infinite;
     const double band = bands.relative * std::min(a, b) + bands.rounding;
@@ -67,20 +70,15 @@ void compare_errors(const json& before, const json& after, const std::string& ki
 /// copies make of a part is within its band.
 void compare_budgets(const json& before, const json& after, const ComparisonBands& bands,
                      std::vector<Change>& changes) {
-  const auto quantities = [](const json& row) {
-    return row.value("error_budget", json::object()).value("quantities", json::object());
-  };
-  const json budgets = quantities(before), others = quantities(after);
+  const json& budgets = object_at(at(before, "error_budget"), "quantities");
+  const json& others = object_at(at(after, "error_budget"), "quantities");
   for (const auto& [name, budget] : budgets.items()) {
     if (!others.contains(name)) continue;
-    const json parts = budget.value("parts", json::object()), new_parts = others[name].value("parts", json::object());
     for (const char* part : {"iteration", "enforcement", "step", "mesh"}) {
-      const json a = parts.value(part, json::object()), b = new_parts.value(part, json::object());
+      const json &a = at(at(budget, "parts"), part), &b = at(at(others[name], "parts"), part);
       ComparisonBands noisy = bands;
-      for (const auto& of : {a, b})
-        if (const json noise = of.value("noise", json()); noise.is_number()) noisy.rounding += noise.get<double>();
-      compare_errors({{name, a.value("value", json())}}, {{name, b.value("value", json())}},
-                     std::string("budget ") + part, noisy, changes);
+      noisy.rounding += number_at(a, "noise") + number_at(b, "noise");
+      compare_errors({{name, at(a, "value")}}, {{name, at(b, "value")}}, std::string("budget ") + part, noisy, changes);
     }
   }
 }
@@ -91,13 +89,11 @@ std::map<std::string, json> values_of(const json& row) {
   const auto add = [&](const std::string& name, const json& by_parameter) {
     for (const auto& [parameter, value] : by_parameter.items()) values["sensitivity " + name + "/" + parameter] = value;
   };
-  const auto part = [&](const char* name) { return row.value(name, json::object()); };
-  const json responses = part("responses"), sensitivities = part("sensitivities"), objectives = part("objectives");
-  for (const auto& [name, value] : responses.items()) values["response " + name] = value;
-  for (const auto& [name, by_parameter] : sensitivities.items()) add(name, by_parameter);
-  for (const auto& [name, objective] : objectives.items()) {
-    values["response " + name] = objective.value("value", json());
-    add(name, objective.value("gradient", json::object()));
+  for (const auto& [name, value] : object_at(row, "responses").items()) values["response " + name] = value;
+  for (const auto& [name, by_parameter] : object_at(row, "sensitivities").items()) add(name, by_parameter);
+  for (const auto& [name, objective] : object_at(row, "objectives").items()) {
+    values["response " + name] = at(objective, "value");
+    add(name, object_at(objective, "gradient"));
   }
   return values;
 }
@@ -126,7 +122,7 @@ void compare_values(const json& before, const json& after, const Sizes& sizes, d
 }
 
 void compare_scenes(const json& before, const json& after, std::vector<Change>& changes) {
-  const json a = before.value("scene_hash", json()), b = after.value("scene_hash", json());
+  const json &a = at(before, "scene_hash"), &b = at(after, "scene_hash");
   if (a.is_string() && b.is_string() && a != b) changes.push_back({"scene", a, b, infinite, false});
 }
 
@@ -135,11 +131,11 @@ CellComparison compare_cells(const json& before, const json& after, const Sizes&
   std::tie(cell.label, cell.variant) = name_of(before);
   auto& changes = cell.changes;
   compare_scenes(before, after, changes);
-  if (before.value("status", "") != after.value("status", ""))
-    changes.push_back({"status", before.value("status", json()), after.value("status", json()), infinite,
-                       converged(before) && !converged(after)});
-  const auto part = [](const json& row, const char* outer, const char* inner) {
-    return row.value(outer, json::object()).value(inner, json::object());
+  if (at(before, "status") != at(after, "status"))
+    changes.push_back(
+        {"status", at(before, "status"), at(after, "status"), infinite, converged(before) && !converged(after)});
+  const auto part = [](const json& row, const char* outer, const char* inner) -> const json& {
+    return object_at(at(row, outer), inner);
   };
   compare_counts(part(before, "cost", "counts"), part(after, "cost", "counts"), changes);
   for (const char* kind : {"enforcement", "discretization", "kkt"})
@@ -147,8 +143,8 @@ CellComparison compare_cells(const json& before, const json& after, const Sizes&
   compare_budgets(before, after, bands, changes);
   compare_values(before, after, sizes, bands.rounding, changes);
   std::stable_sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) { return a.size > b.size; });
-  cell.seconds_before = part(before, "cost", "seconds").value("total", 0.0);
-  cell.seconds_after = part(after, "cost", "seconds").value("total", 0.0);
+  cell.seconds_before = number_at(part(before, "cost", "seconds"), "total");
+  cell.seconds_after = number_at(part(after, "cost", "seconds"), "total");
   return cell;
 }
 
@@ -262,8 +258,8 @@ std::string unrelated(const RowsById& before, const RowsById& after) {
     const auto other = new_cells.find(name);
     if (other == new_cells.end()) continue;
     same_cells = true;
-    const json hash = row->value("scene_hash", json());
-    same_scene = same_scene || (hash.is_string() && hash == other->second->value("scene_hash", json()));
+    const json& hash = at(*row, "scene_hash");
+    same_scene = same_scene || (hash.is_string() && hash == at(*other->second, "scene_hash"));
     const auto old_values = values_of(*row), new_values = values_of(*other->second);
     values = values || !old_values.empty() || !new_values.empty();
     for (const auto& [quantity, value] : old_values) same_scene = same_scene || new_values.count(quantity) > 0;
@@ -280,8 +276,7 @@ int compare_command(const CompareArguments& arguments) try {
   for (int i = 0; i < 2; ++i) {
     check_recorded(directories[i]);
     StoredRows stored = read_rows(directories[i], drop_curves);
-    if (!stored.sound())
-      std::cerr << printable("note: " + directories[i] + "/results.jsonl: " + stored.faults()) << '\n';
+    tell_faults(stored, directories[i]);
     rows[i] = std::move(stored.rows);
     if (rows[i].empty()) throw InputFault(directories[i] + ": there are no rows in results.jsonl");
   }
@@ -326,8 +321,7 @@ int compare_command(const CompareArguments& arguments) try {
   }
   return worse ? not_solved : done;
 } catch (const json::exception& error) {  // rows without a checksum may hold anything
-  throw InputFault(arguments.before + " or " + arguments.after + ": rows without a checksum hold what stickslip does " +
-                   "not write (" + error.what() + ")");
+  throw not_written(arguments.before + " or " + arguments.after + ": rows without a checksum", error);
 }
 
 }  // namespace stickslip

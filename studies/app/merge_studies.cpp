@@ -9,6 +9,7 @@
 
 #include "studies/app/commands.hpp"
 #include "studies/app/exit_codes.hpp"
+#include "studies/app/recorded.hpp"
 #include "studies/app/say.hpp"
 #include "studies/io/atomic_file.hpp"
 #include "studies/io/input_fault.hpp"
@@ -180,8 +181,7 @@ int merge_command(const std::vector<std::string>& directories, const std::string
       continue;
     }
     parts.push_back(read_part(directory));
-    if (const auto& part = parts.back(); !part.stored.sound())
-      std::cerr << printable("note: " + directory + "/results.jsonl: " + part.stored.faults()) << '\n';
+    tell_faults(parts.back().stored, directory);
     if (const std::string fault = difference(parts.front(), parts.back()); !fault.empty()) faults += fault + "\n";
   }
   std::cerr << printable_lines(absent + faults);

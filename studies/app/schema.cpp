@@ -9,6 +9,7 @@
 #include "studies/input/method_options.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/input/response_kinds.hpp"
+#include "studies/input/small_objects.hpp"
 #include "studies/sweep/closed_forms.hpp"
 
 namespace stickslip {
@@ -17,15 +18,6 @@ namespace {
 using Schema = nlohmann::ordered_json;
 
 constexpr const char* draft = "https://json-schema.org/draft/2020-12/schema";
-
-/// {"KEY": {...}} with one of the kinds' keys.
-template <class Kinds>
-Schema one_of(const Kinds& kinds) {
-  Schema properties = Schema::object();
-  for (const auto& kind : kinds) properties[kind.key] = kind.schema();
-  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
-          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", properties}};
-}
 
 /// The kinds of obstacles, one of which goes with what all of them may have.
 void add_obstacle_kinds(Schema& obstacle) {
@@ -56,12 +48,16 @@ Schema scene_schema() {
   definitions.update(Schema::parse(schema_texts::motion));
   definitions["mesh"] = mesh_schema();
   definitions["plane_mesh"] = plane_mesh_schema();
-  definitions["material"] = one_of(material_kinds());
+  Schema materials;
+  for (const auto& kind : material_kinds()) materials[kind.key] = kind.schema();
+  definitions["material"] = one_of(materials);
   definitions["response"] = response_schema();
   definitions["method"] = method_schema(OptionLists::refused);
   Schema schema = document("stickslip scene", schema_texts::scene, {"bodies", "time"}, definitions);
   add_obstacle_kinds(schema["properties"]["obstacles"]["additionalProperties"]);
   Schema& contact = schema["properties"]["contacts"]["additionalProperties"]["properties"];
+  schema["properties"][LinearSolverObject::key] = schema_of_object<LinearSolverObject>();
+  schema["properties"][SensitivityObject::key] = schema_of_object<SensitivityObject>();
   for (Schema& law : friction_schemas()) contact["friction"]["anyOf"].push_back(std::move(law));
   return schema;
 }
@@ -73,6 +69,8 @@ Schema study_schema() {
   Schema schema = document("stickslip study", schema_texts::study, Schema::array(), definitions);
   schema["oneOf"] = {{{"required", {"scene"}}}, {{"required", {"scenes"}}}};
   schema["properties"]["reference"]["items"]["properties"]["analytic"]["enum"] = analytic_names();
+  schema["properties"][TimingObject::key] = schema_of_object<TimingObject>();
+  schema["properties"]["error_budget"]["anyOf"][1]["properties"] = schema_of_keys<ErrorBudgetObject>().properties;
   return schema;
 }
 

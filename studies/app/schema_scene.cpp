@@ -21,13 +21,7 @@ const char* const common = R"json({
             "$ref": "#/$defs/table", "examples": [[[0, 0], [1, 0.1]]]},
           "repeat": {"description": "how often the table is run through, one time right after the other",
             "$ref": "#/$defs/count", "default": 1, "examples": [1000]}}}]},
-  "side": {"title": "SIDE", "type": "string"},
-  "box_grade": {"type": "object", "title": "one of the following", "minProperties": 1, "maxProperties": 1,
-    "additionalProperties": false, "examples": [{"bottom": 8}], "properties": {
-      "left": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]},
-      "right": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]},
-      "bottom": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]},
-      "top": {"description": "ratio", "$ref": "#/$defs/positive", "examples": [8]}}}
+  "side": {"title": "SIDE", "type": "string"}
 })json";
 
 const char* const motion = R"json({
@@ -200,24 +194,13 @@ const char* const scene = R"json({
           "dependentSchemas": {"shape": {"maxProperties": 1}}}]}},
   "method": {"description": "which method runs, with its options; needed unless -m names one", "$ref": "#/$defs/method",
     "examples": [{"monolithic_al": {}}]},
-  "linear_solver": {"description": "what carries the run; the solution is the same", "type": "object",
-    "examples": [{"engine": "sparse"}], "additionalProperties": false, "properties": {
-      "engine": {
-        "description": "sparse: one large matrix; condensed: bodies reduced to contact unknowns; auto: the cheaper",
-        "enum": ["auto", "sparse", "condensed"], "default": "auto"},
-      "backend": {"description": "library of the sparse factorisations, where the build has it",
-        "enum": ["auto", "cholmod", "mumps", "eigen"], "default": "auto"}}},
+  "linear_solver": null,
   "output": {"description": "what is written", "type": "object", "examples": [{"fields": "all"}],
     "additionalProperties": false, "properties": {
       "fields": {"description": "increments with fields: the last, all, or every n-th and the last",
         "title": "last, all or whole number >= 1", "default": "last", "examples": [10],
         "anyOf": [{"enum": ["last", "all"]}, {"$ref": "#/$defs/count"}]}}},
-  "sensitivity": {"description": "how derivatives are taken", "type": "object", "examples": [{"mode": "adjoint"}],
-    "additionalProperties": false, "properties": {
-      "mode": {"description": "direct: of all responses and objectives; adjoint: of the objectives alone",
-        "enum": ["direct", "adjoint"], "default": "direct"},
-      "memory": {"description": "adjoint: megabytes for the displacements, and for what bodies remember, of all steps; beyond them states are let go, and solved again on the way back",
-        "$ref": "#/$defs/positive", "default": 512, "examples": [100]}}}
+  "sensitivity": null
 })json";
 
 }  // namespace stickslip::schema_texts

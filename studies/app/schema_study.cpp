@@ -71,16 +71,10 @@ const char* const study = R"json({
     "title": "list of up to six numbers > 0 and < 1", "type": "array", "default": [1e-2, 1e-4, 1e-6],
     "examples": [[1e-2, 1e-5]],
     "minItems": 1, "maxItems": 6, "items": {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}},
-  "timing": {"description": "a pass of its own that measures seconds", "type": "object",
-    "examples": [{"repeat": 3}], "additionalProperties": false, "properties": {
-    "repeat": {"description": "how often every converged cell is run again; left out: no timing pass",
-      "$ref": "#/$defs/count", "maximum": 1000, "examples": [3]}}},
+  "timing": null,
   "error_budget": {"description": "measure what each error is made of, by some ten more runs a cell; left out: no",
     "title": "true, false or object", "default": false, "examples": [true], "anyOf": [{"type": "boolean"},
-    {"type": "object", "additionalProperties": false, "properties": {
-    "copies": {"description": "runs of the scene with numbers moved by a rounding, for each that is compared",
-      "title": "whole number from 2 to 64", "type": "integer", "minimum": 2, "maximum": 64, "default": 4,
-      "examples": [8]}}}]}
+    {"type": "object", "additionalProperties": false}]}
 })json";
 
 }  // namespace stickslip::schema_texts

@@ -1,6 +1,7 @@
 /// What files may hold, in JSON Schema: for every key its type, its meaning with unit, its default and an example. This
 /// is where they are described, but for what says its keys itself: meshes, materials, obstacles and
-/// laws of friction (core), options of methods (methods/options.hpp) and kinds of responses (studies/input):
+/// laws of friction (core), options of methods (methods/options.hpp), kinds of responses and small objects, which are
+/// null here (studies/input):
 /// editors read it by `stickslip schema`, and the tables of docs/ are printed from it (tools/key_tables.py).
 ///
 /// "title" is the name of a type in the tables; "default" is what holds where the key is left out.

@@ -7,7 +7,6 @@ PROGRAM is the stickslip to test, by default the one on the PATH. Exit code: 0 a
 docs/hard.md says how to read what it writes and how to add a case.
 """
 
-import argparse
 import fnmatch
 import json
 import math
@@ -17,27 +16,21 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from time import monotonic
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+HERE = Path(__file__).resolve().parent
+sys.path.append(str(HERE.parent))
 from case_file import METHODS, CaseError, read_cases  # noqa: E402
 from comparison import compare, read_earlier  # noqa: E402
 from judge import judge, judge_relations  # noqa: E402
 from page import write_page  # noqa: E402
 from run_case import execute, has_command, run_case  # noqa: E402
+from suite import InputError, find_program, parser_of  # noqa: E402
 
 SUITE = "stickslip hard cases"
-HERE = Path(__file__).resolve().parent
-
-
-class InputError(Exception):
-    """Bad arguments or files; exit code 2."""
 
 
 def arguments(argv):
-    parser = argparse.ArgumentParser(prog="hard.py", description=__doc__.splitlines()[0])
-    parser.add_argument("program", nargs="?", default="stickslip", metavar="PROGRAM")
-    parser.add_argument("-o", "--output", default="results/hard", metavar="DIR", help="by default results/hard")
+    parser = parser_of("hard", __doc__)
     parser.add_argument("--only", action="append", metavar="GLOB", help="cases by name, several times")
-    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="runs at a time, by default 2")
     parser.add_argument("--timeout", type=float, default=60, metavar="SECONDS", help="of a run, by default 60")
     parser.add_argument("--compare", metavar="OLD", help="folder of an earlier suite: marks what changed since")
     parser.add_argument("--cases", default=str(HERE), metavar="DIR", help="folder of the cases, by default this one")
@@ -45,13 +38,6 @@ def arguments(argv):
     if chosen.jobs < 1 or not chosen.timeout > 0:
         raise InputError("--jobs must be at least 1 and --timeout more than 0")
     return chosen
-
-
-def find_program(name):
-    path = shutil.which(name) or (name if Path(name).is_file() else None)
-    if path is None:
-        raise InputError(f'there is no program "{name}"; build it, and name its path')
-    return str(Path(path).resolve())
 
 
 def choose(cases, globs):

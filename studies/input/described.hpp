@@ -4,216 +4,328 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <tuple>
+#include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "core/algebra/described.hpp"
 #include "core/mesh/extruded.hpp"
+#include "methods/options.hpp"
 #include "studies/input/ranges.hpp"
 #include "studies/input/scene_reading.hpp"
 
 namespace stickslip {
+
+/// Calls f(std::type_identity<X>()) for each alternative X of a variant.
+template <class Variant, class F>
+void for_each_alternative(F&& f) {
+  [&]<class... X>(std::type_identity<std::variant<X...>>) {
+    (f(std::type_identity<X>()), ...);
+  }(std::type_identity<Variant>());
+}
+
+/// What `make` makes of each alternative of a variant, in their order.
+template <class Variant, class Make>
+auto list_of(Make make) {
+  return [&]<class... X>(std::type_identity<std::variant<X...>>) {
+    return std::vector{make(std::type_identity<X>())...};
+  }(std::type_identity<Variant>());
+}
+
+/// JSON Schema of {"KEY": ...} with one of the keys.
+inline nlohmann::ordered_json one_of(const nlohmann::ordered_json& properties) {
+  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
+          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", properties}};
+}
+
+// How keys are written that hold no quantity of a scene; left out, what the struct begins with.
+
+/// A whole number; left out of a std::optional, none.
+struct WholeNumber {
+  const char* title;
+  int least, most, example;
+};
+/// A number that is never a parameter.
+struct PlainNumber {
+  Range range;
+  double example;
+};
 
 /// The parts of a schema that say the keys of an object.
 struct ObjectSchema {
   using Schema = nlohmann::ordered_json;
   Schema required = Schema::array(), example = Schema::object(), properties = Schema::object();
 };
+template <class S>
+ObjectSchema schema_of_keys();
 
 namespace detail {
 
-inline nlohmann::ordered_json as_json(double x) {
+using Schema = nlohmann::ordered_json;
+
+inline Schema as_json(double x) {
   const auto whole = static_cast<long>(x);
   if (x == static_cast<double>(whole)) return whole;
   return x;
 }
 template <class X, std::size_t n>
-nlohmann::ordered_json as_json(const std::array<X, n>& list) {
-  auto json = nlohmann::ordered_json::array();
+Schema as_json(const std::array<X, n>& list) {
+  auto json = Schema::array();
   for (const X& x : list) json.push_back(as_json(x));
   return json;
 }
 
-inline nlohmann::ordered_json as_json(const char* text) { return nlohmann::ordered_json::parse(text); }
+inline Schema as_json(const char* text) { return Schema::parse(text); }
 
 template <class How>
 concept HasExample = requires(const How& how) {
   how.example;
 };
 
+template <class How, class... Others>
+inline constexpr bool is_one_of = (std::is_same_v<How, Others> || ...);
 /// Whether a key that is written so must be there.
 template <class How>
-inline constexpr bool must_be_there = HasExample<How>;
-template <>
-inline constexpr bool must_be_there<IfGiven> = false;
+inline constexpr bool must_be_there =
+    HasExample<How> && !is_one_of<How, IfGiven, AutoOrSetting, WholeNumber, PlainNumber>;
 template <class S>
 inline constexpr bool must_be_there<EndOfTurn<S>> = false;
 template <class S, std::size_t n>
 inline constexpr bool must_be_there<Grade<S, n>> = false;
 
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, Number& to, const InRange& how) {
-  to = reading.required(object, key, rule_of(how.range));
+/// A key of an object that is read.
+struct KeyAt {
+  const JsonNode& object;
+  SceneReading& reading;
+  const char* key;
+  std::optional<JsonNode> find() const { return object.find(key); }
+};
+
+inline void read_key(const KeyAt& at, Number& to, const InRange& how) {
+  to = at.reading.required(at.object, at.key, rule_of(how.range));
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, Number& to, const IfGiven& how) {
-  to = reading.optional(object, key, to.value, rule_of(how.range));
+inline void read_key(const KeyAt& at, Number& to, const IfGiven& how) {
+  to = at.reading.optional(at.object, at.key, to.value, rule_of(how.range));
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::vector<Number>& to,
-                     const Place2D&) {
-  to = reading.required_vector(object, key, reading.dimension());
+inline void read_key(const KeyAt& at, std::vector<Number>& to, const Place2D&) {
+  to = at.reading.required_vector(at.object, at.key, at.reading.dimension());
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::vector<Number>& to,
-                     const Place3D&) {
-  to = reading.required_vector(object, key, 3);
+inline void read_key(const KeyAt& at, std::vector<Number>& to, const Place3D&) {
+  to = at.reading.required_vector(at.object, at.key, 3);
 }
 /// (Defined beside the list of meshes: mesh_kinds.cpp.)
-void read_key(const JsonNode& object, SceneReading& reading, const char* key, PlaneMesh& to, const MeshInPlane&);
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::vector<Number>& to,
-                     const Direction3D& how) {
-  if (const auto given = object.find(key)) to = reading.direction(*given, how.what);
+void read_key(const KeyAt&, PlaneMesh& to, const MeshInPlane&);
+inline void read_key(const KeyAt& at, std::vector<Number>& to, const Direction3D& how) {
+  if (const auto given = at.find()) to = at.reading.direction(*given, how.what);
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::array<Number, 2>& to,
-                     const Place2D&) {
-  const auto place = reading.required_vector(object, key, 2);
+inline void read_key(const KeyAt& at, std::array<Number, 2>& to, const Place2D&) {
+  const auto place = at.reading.required_vector(at.object, at.key, 2);
   to = {place[0], place[1]};
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key,
-                     std::array<std::array<Number, 2>, 4>& to, const Corners2D&) {
-  const auto given = object.find(key);
+inline void read_key(const KeyAt& at, std::array<std::array<Number, 2>, 4>& to, const Corners2D&) {
+  const auto given = at.find();
   const auto corners = given ? given->array(4, "four corners [x, y], counter-clockwise") : std::nullopt;
   for (int k = 0; k < 4; ++k) {
-    const auto place =
-        corners ? reading.vector((*corners)[k], 2) : std::vector<Number>(2, std::numeric_limits<double>::quiet_NaN());
+    const auto place = corners ? at.reading.vector((*corners)[k], 2)
+                               : std::vector<Number>(2, std::numeric_limits<double>::quiet_NaN());
     to[k] = {place[0], place[1]};
   }
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, int& to, const Count&) {
-  if (const auto given = object.find(key)) to = reading.count(*given, 1).value_or(to);
+inline void read_key(const KeyAt& at, int& to, const Count&) {
+  if (const auto given = at.find()) to = at.reading.count(*given, 1).value_or(to);
 }
 /// As many counts as there are in `to`.
 template <class Cells>
-void read_cells(const JsonNode& object, SceneReading& reading, const char* key, Cells& to) {
+void read_cells(const KeyAt& at, Cells& to) {
   for (int& count : to) count = 1;
-  const auto given = object.find(key);
+  const auto given = at.find();
   const auto all = given ? given->array(to.size(), "an array of " + std::to_string(to.size()) + " whole numbers >= 1")
                          : std::nullopt;
-  for (std::size_t i = 0; all && i < to.size(); ++i) to[i] = reading.count((*all)[i], 1).value_or(1);
+  for (std::size_t i = 0; all && i < to.size(); ++i) to[i] = at.reading.count((*all)[i], 1).value_or(1);
   constexpr double most = std::numeric_limits<int>::max() / 4.0;  // nodes of a quadrilateral are numbered by an int
   if (product(to) > most) given->must_be("fewer cells than 5e8 in all");
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::array<int, 2>& to,
-                     const Counts&) {
-  read_cells(object, reading, key, to);
+inline void read_key(const KeyAt& at, std::array<int, 2>& to, const Counts&) { read_cells(at, to); }
+inline void read_key(const KeyAt& at, std::vector<int>& to, const Counts&) {
+  to.resize(at.reading.dimension());
+  read_cells(at, to);
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::vector<int>& to,
-                     const Counts&) {
-  to.resize(reading.dimension());
-  read_cells(object, reading, key, to);
+inline void read_key(const KeyAt& at, std::vector<Number>& to, const Direction2D& how) {
+  if (const auto given = at.find()) to = at.reading.direction(*given, how.what);
 }
-inline void read_key(const JsonNode& object, SceneReading& reading, const char* key, std::vector<Number>& to,
-                     const Direction2D& how) {
-  if (const auto given = object.find(key)) to = reading.direction(*given, how.what);
-}
-inline void read_key(const JsonNode& object, SceneReading&, const char* key, bool& to, const Flag&) {
-  if (const auto given = object.find(key)) to = given->boolean().value_or(to);
+inline void read_key(const KeyAt& at, bool& to, const Flag&) {
+  if (const auto given = at.find()) to = given->boolean().value_or(to);
 }
 template <class E, std::size_t n>
-void read_key(const JsonNode& object, SceneReading&, const char* key, E& to, const std::array<const char*, n>& words) {
-  const auto given = object.find(key);
+void read_key(const KeyAt& at, E& to, const std::array<const char*, n>& words) {
+  const auto given = at.find();
   const auto word = given ? given->choice({words.begin(), words.end()}) : std::nullopt;
   for (std::size_t i = 0; i < n; ++i)
     if (word == words[i]) to = static_cast<E>(i);
 }
 
+template <class N>
+void read_key(const KeyAt& at, N& to, const WholeNumber& how) {
+  const auto given = at.find();
+  if (const auto number = given ? given->count(how.least, how.most) : std::nullopt) to = *number;
+}
+inline void read_key(const KeyAt& at, double& to, const PlainNumber& how) {
+  if (const auto given = at.find()) to = given->number(rule_of(how.range)).value_or(to);
+}
+
+// Options of methods (methods/options.hpp).
+
+inline void read_key(const KeyAt& at, Regularisation& to, const RhoOption&) {
+  const auto given = at.find();
+  if (!given || given->value() == "auto") return;
+  if (given->value().is_object()) {
+    to.kind = Regularisation::Kind::absolute;
+    given->is_object({{"absolute"}});
+    to.value = at.reading.required(*given, "absolute", positive);
+  } else if (given->value().is_number()) {
+    to.kind = Regularisation::Kind::relative;
+    to.value = at.reading.number(*given, positive);
+  } else {
+    given->must_be(R"("auto", a number > 0 or {"absolute": a number > 0})");
+  }
+}
+inline void read_key(const KeyAt& at, double& to, const Setting& how) {
+  if (const auto given = at.find()) to = at.reading.setting(*given, rule_of(how.range)).value_or(to);
+}
+inline void read_key(const KeyAt& at, std::optional<double>& to, const AutoOrSetting& how) {
+  const auto given = at.find();
+  if (!given || given->value() == "auto") return;
+  const Rule rule = rule_of(how.range);
+  if (given->value().is_number())
+    to = at.reading.setting(*given, rule);
+  else
+    given->must_be("\"auto\" or " + std::string(rule.text));
+}
+inline void read_key(const KeyAt& at, int& to, const AtLeastOne&) { read_key(at, to, Count{}); }
+template <class S>
+Keys allowed_keys();
+template <class S>
+void read_keys(const JsonNode& object, SceneReading& reading, S& to);
+template <class S>
+void read_key(const KeyAt& at, S& to, const Nested&) {
+  const auto given = at.find();
+  if (given && given->is_object(allowed_keys<S>())) read_keys(*given, at.reading, to);
+}
+
 // Keys that are about another member of their struct too.
 
 template <class S>
-void read_key(const JsonNode& object, SceneReading& reading, const char* key, Number& to, const EndOfTurn<S>& how,
-              S& whole) {
-  const auto given = object.find(key);
+void read_key(const KeyAt& at, Number& to, const EndOfTurn<S>& how, S& whole) {
+  const auto given = at.find();
   const double end = given ? given->number(any_number).value_or(std::numeric_limits<double>::quiet_NaN()) : to.value;
   if (!is_full_turn((whole.*how.start).value, end)) {
-    to = reading.optional(object, key, to.value, any_number);
+    to = at.reading.optional(at.object, at.key, to.value, any_number);
     return;
   }
   to = end;
-  reading.constants[child_pointer(object.pointer(), key)] =
+  at.reading.constants[child_pointer(at.object.pointer(), at.key)] =
       "where a closed ring ends, which is where it starts: from_angle is the number that turns it";
 }
 template <class S, std::size_t n>
-void read_key(const JsonNode& object, SceneReading& reading, const char* key, Number& to, const Grade<S, n>& how,
-              S& whole) {
-  const auto given = object.find(key);
+void read_key(const KeyAt& at, Number& to, const Grade<S, n>& how, S& whole) {
+  const auto given = at.find();
   const auto towards = given ? given->kind({how.sides.begin(), how.sides.end()}) : std::nullopt;
   if (!towards) return;
   whole.*how.towards = towards->first;
-  to = reading.number(towards->second, positive);
+  to = at.reading.number(towards->second, positive);
 }
 
-inline nlohmann::ordered_json kind_of(const Number&, const InRange& how) { return schema_of(how.range); }
-inline nlohmann::ordered_json kind_of(const Number& standard, const IfGiven& how) {
+inline Schema kind_of(const Number&, const InRange& how) { return schema_of(how.range); }
+inline Schema kind_of(const Number& standard, const IfGiven& how) {
   auto kind = schema_of(how.range);
-  kind["default"] = as_json(standard.value);
+  kind["default"] = standard.value;
   return kind;
 }
 template <class S>
-nlohmann::ordered_json kind_of(const Number& standard, const EndOfTurn<S>&) {
+Schema kind_of(const Number& standard, const EndOfTurn<S>&) {
   return kind_of(standard, IfGiven{Range::any, 0});
 }
-inline nlohmann::ordered_json kind_of(int, const Count&) { return {{"$ref", "#/$defs/count"}}; }
-inline nlohmann::ordered_json kind_of(const std::array<int, 2>&, const Counts&) { return {{"$ref", "#/$defs/cells"}}; }
-inline nlohmann::ordered_json kind_of(const PlaneMesh&, const MeshInPlane&) { return {{"$ref", "#/$defs/plane_mesh"}}; }
-inline nlohmann::ordered_json kind_of(const std::vector<int>&, const Counts&) {
-  return {{"$ref", "#/$defs/cells_of_axes"}};
-}
-inline nlohmann::ordered_json kind_of(const std::array<std::array<Number, 2>, 4>&, const Corners2D&) {
+inline Schema kind_of(int, const Count&) { return {{"$ref", "#/$defs/count"}}; }
+inline Schema kind_of(const std::array<int, 2>&, const Counts&) { return {{"$ref", "#/$defs/cells"}}; }
+inline Schema kind_of(const PlaneMesh&, const MeshInPlane&) { return {{"$ref", "#/$defs/plane_mesh"}}; }
+inline Schema kind_of(const std::vector<int>&, const Counts&) { return {{"$ref", "#/$defs/cells_of_axes"}}; }
+inline Schema kind_of(const std::array<std::array<Number, 2>, 4>&, const Corners2D&) {
   return {{"title", "four [x, y]"},
           {"type", "array"},
           {"items", {{"$ref", "#/$defs/pair"}}},
           {"minItems", 4},
           {"maxItems", 4}};
 }
-inline nlohmann::ordered_json kind_of(const std::array<Number, 2>&, const Place2D&) {
-  return {{"$ref", "#/$defs/pair"}};
-}
+inline Schema kind_of(const std::array<Number, 2>&, const Place2D&) { return {{"$ref", "#/$defs/pair"}}; }
 template <class How>
-nlohmann::ordered_json kind_of(const std::vector<Number>&, const How&) {
+Schema kind_of(const std::vector<Number>&, const How&) {
   return {{"$ref", "#/$defs/vector"}};
 }
-inline nlohmann::ordered_json three_numbers() {
+inline Schema three_numbers() {
   return {{"title", "[x, y, z]"}, {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
 }
-inline nlohmann::ordered_json kind_of(const std::vector<Number>&, const Place3D&) { return three_numbers(); }
-inline nlohmann::ordered_json kind_of(const std::vector<Number>&, const Direction3D&) { return three_numbers(); }
-inline nlohmann::ordered_json kind_of(bool standard, const Flag&) {
-  return {{"type", "boolean"}, {"default", standard}};
-}
+inline Schema kind_of(const std::vector<Number>&, const Place3D&) { return three_numbers(); }
+inline Schema kind_of(const std::vector<Number>&, const Direction3D&) { return three_numbers(); }
+inline Schema kind_of(bool standard, const Flag&) { return {{"type", "boolean"}, {"default", standard}}; }
 template <class E, std::size_t n>
-nlohmann::ordered_json kind_of(E standard, const std::array<const char*, n>& words) {
+Schema kind_of(E standard, const std::array<const char*, n>& words) {
   return {{"enum", words}, {"default", words[static_cast<std::size_t>(standard)]}};
 }
 
+template <class N>
+Schema kind_of(const N& standard, const WholeNumber& how) {
+  Schema kind{{"title", how.title}, {"type", "integer"}, {"minimum", how.least}, {"maximum", how.most}};
+  if constexpr (std::is_same_v<N, int>) kind["default"] = standard;
+  return kind;
+}
+inline Schema kind_of(double standard, const PlainNumber& how) {
+  return kind_of(Number(standard), IfGiven{how.range, how.example});
+}
+inline Schema kind_of(const Regularisation&, const RhoOption&) {
+  return as_json(R"json({"title": "\"auto\", number > 0 or object", "default": "auto",
+    "examples": ["auto", 100, {"absolute": 2400}], "anyOf": [{"const": "auto"}, {"$ref": "#/$defs/positive"},
+      {"type": "object", "required": ["absolute"], "additionalProperties": false, "properties": {
+        "absolute": {"description": "rho itself (force per length cubed)", "$ref": "#/$defs/positive",
+          "examples": [2400]}}}]})json");
+}
+inline Schema kind_of(double standard, const Setting& how) {
+  Schema kind{{"title", rule_of(how.range).text}, {"default", standard}};
+  kind.update(schema_of(how.range));
+  return kind;
+}
+inline Schema kind_of(const std::optional<double>&, const AutoOrSetting& how) {
+  return {{"title", R"("auto" or )" + std::string(rule_of(how.range).text)},
+          {"anyOf", {{{"const", "auto"}}, schema_of(how.range)}},
+          {"default", "auto"},
+          {"examples", {"auto", how.example}}};
+}
+inline Schema kind_of(int standard, const AtLeastOne&) {
+  return {{"title", "whole number >= 1"}, {"type", "integer"}, {"minimum", 1}, {"default", standard}};
+}
+template <class S>
+Schema kind_of(const S&, const Nested&) {
+  return {{"type", "object"},
+          {"examples", {{{"max_iterations", 50}}}},
+          {"additionalProperties", false},
+          {"properties", schema_of_keys<S>().properties}};
+}
+
 template <class S, class Member, class How>
-nlohmann::ordered_json schema_of_key(const Key<S, Member, How>& key, const S& standard) {
-  nlohmann::ordered_json own{{"description", key.about}};
+Schema schema_of_key(const Key<S, Member, How>& key, const S& standard) {
+  Schema own{{"description", key.about}};
+  if constexpr (HasExample<How>) own["examples"] = Schema::array({as_json(key.how.example)});
   own.update(kind_of(standard.*key.member, key.how));
-  if constexpr (HasExample<How>) own["examples"] = nlohmann::ordered_json::array({as_json(key.how.example)});
   return own;
 }
-/// Of the four sides of a grid it is a definition.
 template <class S, std::size_t n>
-nlohmann::ordered_json schema_of_key(const Key<S, Number, Grade<S, n>>& key, const S&) {
-  using Schema = nlohmann::ordered_json;
-  if (n == grid_sides.size()) return {{"$ref", "#/$defs/box_grade"}, {"description", key.about}};
+Schema schema_of_key(const Key<S, Number, Grade<S, n>>& key, const S&) {
   const Schema example = as_json(key.how.example);
   Schema sides = Schema::object();
   for (const char* side : key.how.sides)
     sides[side] = {{"description", "ratio"}, {"$ref", "#/$defs/positive"}, {"examples", Schema::array({example})}};
-  return {{"description", key.about},
-          {"type", "object"},
-          {"title", "one of the following"},
-          {"examples", Schema::array({{{key.how.sides[0], example}}})},
-          {"minProperties", 1},
-          {"maxProperties", 1},
-          {"additionalProperties", false},
-          {"properties", sides}};
+  Schema own{{"description", key.about}, {"examples", Schema::array({{{key.how.sides[0], example}}})}};
+  own.update(one_of(sides));
+  return own;
 }
 
 template <class S, class F>
@@ -221,33 +333,54 @@ void for_each_key(F&& f) {
   std::apply([&](const auto&... key) { (f(key), ...); }, S::keys());
 }
 
+/// The keys that the object of a struct must have and may have.
+template <class S>
+Keys allowed_keys() {
+  Keys keys;
+  for_each_key<S>([&]<class O, class M, class How>(const Key<O, M, How>& key) {
+    (must_be_there<How> ? keys.required : keys.optional).push_back(key.key);
+  });
+  return keys;
+}
+
+/// Reads what there is of the keys; faults of the values are reported.
+template <class S>
+void read_keys(const JsonNode& object, SceneReading& reading, S& to) {
+  for_each_key<S>([&](const auto& key) {
+    const KeyAt at{object, reading, key.key};
+    auto& member = to.*key.member;
+    if constexpr (requires { read_key(at, member, key.how, to); })
+      read_key(at, member, key.how, to);
+    else
+      read_key(at, member, key.how);
+  });
+}
+
 }  // namespace detail
 
 /// None where it is no object with these keys. Faults of its values are reported.
-template <Described S>
+template <class S>
 std::optional<S> read_described(const JsonNode& node, SceneReading& reading) {
-  std::size_t required = 0;
-  detail::for_each_key<S>(
-      [&]<class O, class M, class How>(const Key<O, M, How>&) { required += detail::must_be_there<How>; });
-  Keys keys;
-  keys.required.reserve(required);
-  keys.optional.reserve(std::tuple_size_v<decltype(S::keys())> - required);
-  detail::for_each_key<S>([&]<class O, class M, class How>(const Key<O, M, How>& key) {
-    (detail::must_be_there<How> ? keys.required : keys.optional).push_back(key.key);
-  });
-  if (!node.is_object(keys)) return std::nullopt;
+  if (!node.is_object(detail::allowed_keys<S>())) return std::nullopt;
   S read;
-  detail::for_each_key<S>([&](const auto& key) {
-    auto& member = read.*key.member;
-    if constexpr (requires { detail::read_key(node, reading, key.key, member, key.how, read); })
-      detail::read_key(node, reading, key.key, member, key.how, read);
-    else
-      detail::read_key(node, reading, key.key, member, key.how);
-  });
+  detail::read_keys(node, reading, read);
   return read;
 }
+/// The same of an object that stands in no scene.
+template <class S>
+std::optional<S> read_described(const JsonNode& node, Diagnostics& diagnostics) {
+  MeshFiles none;
+  SceneReading reading(diagnostics, {}, none);
+  return read_described<S>(node, reading);
+}
 
-template <Described S>
+/// The same as one of the alternatives of a variant.
+template <class Variant, Described S>
+std::optional<Variant> read_as(const JsonNode& node, SceneReading& reading) {
+  return read_described<S>(node, reading);
+}
+
+template <class S>
 ObjectSchema schema_of_keys() {
   ObjectSchema of;
   const S standard{};
@@ -266,12 +399,13 @@ ObjectSchema schema_of_keys() {
 template <Described S>
 nlohmann::ordered_json schema_of_object() {
   const auto keys = schema_of_keys<S>();
-  return {{"description", S::about},
-          {"type", "object"},
-          {"examples", nlohmann::ordered_json::array({keys.example})},
-          {"required", keys.required},
-          {"additionalProperties", false},
-          {"properties", keys.properties}};
+  nlohmann::ordered_json schema{{"description", S::about},
+                                {"type", "object"},
+                                {"examples", nlohmann::ordered_json::array({keys.example})},
+                                {"additionalProperties", false},
+                                {"properties", keys.properties}};
+  if (!keys.required.empty()) schema["required"] = keys.required;
+  return schema;
 }
 
 }  // namespace stickslip

@@ -16,11 +16,6 @@ void for_each_description(F&& f) {
   std::apply([&](const auto&... number) { (f(number), ...); }, Law::numbers());
 }
 
-template <class Law>
-const char* key_of() {
-  return std::get<0>(Law::numbers()).key;
-}
-
 /// {"coulomb": mu, "limit": force per area}
 template <class Law>
 std::string form_of() {
@@ -68,13 +63,10 @@ struct FrictionKind {
   FrictionLaw<Number> (*read)(const JsonNode&, SceneReading&);
 };
 
-template <class... Law>
-std::vector<FrictionKind> friction_kinds_of(std::type_identity<std::variant<Law...>>) {
-  return {{key_of<Law>(), form_of<Law>, schema_of<Law>, read_law<Law>}...};
-}
-
 const std::vector<FrictionKind>& friction_kinds() {
-  static const auto kinds = friction_kinds_of(std::type_identity<FrictionLaws<Number>>());
+  static const auto kinds = list_of<FrictionLaws<Number>>([]<class Law>(std::type_identity<Law>) {
+    return FrictionKind{std::get<0>(Law::numbers()).key, form_of<Law>, schema_of<Law>, read_law<Law>};
+  });
   return kinds;
 }
 

@@ -126,11 +126,6 @@ MaterialKind entry_of(std::type_identity<GroundedSpring>) {
   return {"grounded_spring", spring_schema, "holds a point", read_spring};
 }
 
-template <Described M>
-std::optional<Material> read_described_material(const JsonNode& node, SceneReading& reading) {
-  return read_described<M>(node, reading);
-}
-
 template <class M>
 bool goes_with(Filling filling, bool finite_strain) {
   if (filling == Filling::point) return HoldsPoint<M>;
@@ -140,28 +135,23 @@ bool goes_with(Filling filling, bool finite_strain) {
 }
 
 template <class M>
-MaterialKind material_kind() {
+MaterialKind material_kind(std::type_identity<M>) {
   static_assert(
       Described<M> || requires { entry_of(std::type_identity<M>()); },
       "a material of core/solids/materials.hpp lacks its keys(), or entry_of() in studies/input/materials.cpp");
   MaterialKind kind;
   if constexpr (Described<M>)
-    kind = {M::key, schema_of_object<M>, M::place, read_described_material<M>};
+    kind = {M::key, schema_of_object<M>, M::place, read_as<Material, M>};
   else
     kind = entry_of(std::type_identity<M>());
   kind.goes_with = goes_with<M>;
   return kind;
 }
 
-template <class... M>
-std::vector<MaterialKind> material_kinds_of(std::type_identity<std::variant<M...>>) {
-  return {material_kind<M>()...};
-}
-
 }  // namespace
 
 const std::vector<MaterialKind>& material_kinds() {
-  static const auto kinds = material_kinds_of(std::type_identity<Material>());
+  static const auto kinds = list_of<Material>([](auto material) { return material_kind(material); });
   return kinds;
 }
 

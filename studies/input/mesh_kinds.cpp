@@ -1,7 +1,6 @@
 #include "studies/input/mesh_kinds.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <sstream>
 #include <type_traits>
@@ -42,39 +41,27 @@ struct MeshKind {
   std::optional<MeshDescription> (*read)(const JsonNode& node, SceneReading& reading);
 };
 
-template <Described M>
-std::optional<MeshDescription> read_generator(const JsonNode& node, SceneReading& reading) {
+template <class AnyMesh, Described M>
+std::optional<AnyMesh> read_generator(const JsonNode& node, SceneReading& reading) {
   auto mesh = read_described<M>(node, reading);
   if (!mesh) return std::nullopt;
   if constexpr (requires { compare(node, *mesh); }) compare(node, *mesh);
   return *std::move(mesh);
 }
 
-template <std::size_t... i>
-constexpr std::array<MeshKind, sizeof...(i)> mesh_kinds_of(std::index_sequence<i...>) {
-  const auto kind = []<class M>(std::type_identity<M>) {
-    constexpr bool is_in_space = M::filling != Filling::continuum || requires { M::fills_space; };
-    return MeshKind{M::key, is_in_space, schema_of_object<M>, read_generator<M>};
-  };
-  return {kind(std::type_identity<std::variant_alternative_t<i, MeshDescription>>())...};
-}
-
-/// All, in the order of MeshDescription, the last of which is the mesh of a file.
-constexpr auto mesh_kinds = mesh_kinds_of(std::make_index_sequence<std::variant_size_v<MeshDescription> - 1>());
-
-template <std::size_t... i>
-std::optional<PlaneMesh> read_plane_mesh(const std::string& name, const JsonNode& node, SceneReading& reading,
-                                         std::index_sequence<i...>) {
-  std::optional<PlaneMesh> read;
-  const auto take = [&]<class M>(std::type_identity<M>) {
-    if (name != M::key) return;
-    auto mesh = read_described<M>(node, reading);
-    if (!mesh) return;
-    if constexpr (requires { compare(node, *mesh); }) compare(node, *mesh);
-    read = *std::move(mesh);
-  };
-  (take(std::type_identity<std::variant_alternative_t<i, PlaneMesh>>()), ...);
-  return read;
+/// All, in the order of MeshDescription, but for the mesh of a file.
+const std::vector<MeshKind>& mesh_kinds() {
+  static const auto all = [] {
+    std::vector<MeshKind> kinds;
+    for_each_alternative<MeshDescription>([&]<class M>(std::type_identity<M>) {
+      if constexpr (!std::is_same_v<M, ImportedMesh>) {
+        constexpr bool is_in_space = M::filling != Filling::continuum || requires { M::fills_space; };
+        kinds.push_back({M::key, is_in_space, schema_of_object<M>, read_generator<MeshDescription, M>});
+      }
+    });
+    return kinds;
+  }();
+  return all;
 }
 
 /// The mesh file's content, read at most once; none where it cannot be read.
@@ -130,19 +117,18 @@ std::optional<MeshDescription> read_gmsh(const JsonNode& mesh, const JsonNode& n
 
 namespace detail {
 
-void read_key(const JsonNode& object, SceneReading& reading, const char* key, PlaneMesh& to, const MeshInPlane&) {
-  const auto given = object.find(key);
+void read_key(const KeyAt& at, PlaneMesh& to, const MeshInPlane&) {
+  const auto given = at.find();
   if (!given) return;
-  constexpr auto kinds = std::make_index_sequence<std::variant_size_v<PlaneMesh>>();
-  std::vector<std::string> keys;
-  const auto list = [&]<std::size_t... i>(std::index_sequence<i...>) {
-    (keys.emplace_back(std::variant_alternative_t<i, PlaneMesh>::key), ...);
-  };
-  list(kinds);
-  const auto named = given->kind(keys);
+  SceneReading& reading = at.reading;
+  const auto named =
+      given->kind(list_of<PlaneMesh>([]<class M>(std::type_identity<M>) { return std::string(M::key); }));
   if (!named) return;
   reading.in_plane_mesh = true;
-  if (auto mesh = read_plane_mesh(named->first, named->second, reading, kinds)) to = *std::move(mesh);
+  for_each_alternative<PlaneMesh>([&]<class M>(std::type_identity<M>) {
+    if (named->first != M::key) return;
+    if (auto mesh = read_generator<PlaneMesh, M>(named->second, reading)) to = *std::move(mesh);
+  });
   reading.in_plane_mesh = false;
 }
 
@@ -150,8 +136,8 @@ void read_key(const JsonNode& object, SceneReading& reading, const char* key, Pl
 
 std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& reading) {
   std::vector<std::string> keys;
-  keys.reserve(mesh_kinds.size() + 1);
-  for (const auto& kind : mesh_kinds) keys.emplace_back(kind.key);
+  keys.reserve(mesh_kinds().size() + 1);
+  for (const auto& kind : mesh_kinds()) keys.emplace_back(kind.key);
   keys.emplace_back("gmsh");
   const auto named = node.kind(keys, {"sphere"}, {"body", "split"});
   if (!named) return std::nullopt;
@@ -159,12 +145,12 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
   if (name != "gmsh")
     for (const char* key : {"body", "split"})
       if (const auto found = node.find(key)) found->error_at_key("belongs to gmsh, not to " + name);
-  const auto generator = std::find_if(mesh_kinds.begin(), mesh_kinds.end(),
+  const auto generator = std::find_if(mesh_kinds().begin(), mesh_kinds().end(),
                                       [&name = name](const MeshKind& kind) { return name == kind.key; });
-  const bool from_file = generator == mesh_kinds.end();
+  const bool from_file = generator == mesh_kinds().end();
   if (reading.dimension() == 3 && !from_file && !generator->is_in_space) {
     std::vector<std::string> allowed;
-    for (const auto& kind : mesh_kinds)
+    for (const auto& kind : mesh_kinds())
       if (kind.is_in_space) allowed.emplace_back(kind.key);
     allowed.emplace_back("gmsh");
     mesh.error_at_key(in_quotes(name) +
@@ -176,19 +162,13 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
 
 Schema plane_mesh_schema() {
   Schema properties = Schema::object();
-  const auto add = [&]<std::size_t... i>(std::index_sequence<i...>) {
-    ((properties[std::variant_alternative_t<i, PlaneMesh>::key] =
-          schema_of_object<std::variant_alternative_t<i, PlaneMesh>>()),
-     ...);
-  };
-  add(std::make_index_sequence<std::variant_size_v<PlaneMesh>>());
-  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
-          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", properties}};
+  for_each_alternative<PlaneMesh>([&]<class M>(std::type_identity<M>) { properties[M::key] = schema_of_object<M>(); });
+  return one_of(properties);
 }
 
 Schema mesh_schema() {
   Schema properties = Schema::object(), one = Schema::array();
-  for (const auto& kind : mesh_kinds) {
+  for (const auto& kind : mesh_kinds()) {
     properties[kind.key] = kind.schema();
     one.push_back({{"required", {kind.key}}});
   }

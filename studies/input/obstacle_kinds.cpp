@@ -88,21 +88,9 @@ Schema polyline_schema() {
 }
 
 ObstacleKind entry_of(std::type_identity<Polyline>) { return {"polyline", polyline_schema, read_polyline}; }
-template <Described S>
-Schema surface_schema() {
-  const auto keys = schema_of_keys<S>();
-  return {{"description", S::about},       {"type", "object"},
-          {"required", keys.required},     {"examples", Schema::array({keys.example})},
-          {"additionalProperties", false}, {"properties", keys.properties}};
-}
-
-template <Described S>
-std::optional<RigidSurface> read_described_surface(const JsonNode& node, SceneReading& reading) {
-  return read_described<S>(node, reading);
-}
 
 template <class S>
-ObstacleKind obstacle_kind() {
+ObstacleKind obstacle_kind(std::type_identity<S>) {
   static_assert((Described<S> || requires { entry_of(std::type_identity<S>()); }) &&
                     requires(const S& surface) {
                       { as_drawn(surface) } -> std::same_as<json>;
@@ -111,7 +99,7 @@ ObstacleKind obstacle_kind() {
                 "studies/input/obstacle_kinds.cpp");
   ObstacleKind kind;
   if constexpr (Described<S>)
-    kind = {S::key, surface_schema<S>, read_described_surface<S>};
+    kind = {S::key, schema_of_object<S>, read_as<RigidSurface, S>};
   else
     kind = entry_of(std::type_identity<S>());
   kind.is_in_plane = S::is_in_plane;
@@ -119,15 +107,10 @@ ObstacleKind obstacle_kind() {
   return kind;
 }
 
-template <class... S>
-std::vector<ObstacleKind> obstacle_kinds_of(std::type_identity<std::variant<S...>>) {
-  return {obstacle_kind<S>()...};
-}
-
 }  // namespace
 
 const std::vector<ObstacleKind>& obstacle_kinds() {
-  static const auto kinds = obstacle_kinds_of(std::type_identity<RigidSurface>());
+  static const auto kinds = list_of<RigidSurface>([](auto surface) { return obstacle_kind(surface); });
   return kinds;
 }
 

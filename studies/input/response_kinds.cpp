@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "studies/input/described.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -150,8 +152,7 @@ Schema response_schema() {
   const Schema schemas = Schema::parse(key_schemas);
   Schema kinds = Schema::object();
   for (const auto& kind : response_kinds()) kinds[kind.name] = kind_schema(kind, schemas);
-  return {{"type", "object"},   {"title", "one of the following"}, {"minProperties", 1},
-          {"maxProperties", 1}, {"additionalProperties", false},   {"properties", kinds}};
+  return one_of(kinds);
 }
 
 }  // namespace stickslip

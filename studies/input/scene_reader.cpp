@@ -5,6 +5,7 @@
 
 #include "studies/input/method_options.hpp"
 #include "studies/input/scene_reading.hpp"
+#include "studies/input/small_objects.hpp"
 
 namespace stickslip {
 namespace {
@@ -21,33 +22,21 @@ void read_strain(const JsonNode& node, SceneReading& reading) {
   reading.scene.finite_strain = node.choice({"small", "finite"}) == "finite";
 }
 
-void read_linear_solver(const JsonNode& node, const Scene& scene, Input& input) {
-  using Engine = LinearAlgebra::Engine;
-  if (!node.is_object({{}, {"engine", "backend"}})) return;
-  if (const auto engine = node.find("engine")) {
-    const auto name = engine->choice({"auto", "sparse", "condensed"});
-    if (name == "sparse") input.linear_algebra.engine = Engine::sparse;
-    if (name == "condensed") input.linear_algebra.engine = Engine::condensed;
-    const auto remembers = [](const Body& body) { return flows(body.material); };
-    const bool none_constant =
-        scene.finite_strain ||
-        (!scene.bodies.empty() && std::all_of(scene.bodies.begin(), scene.bodies.end(), remembers));
-    if (name == "condensed" && none_constant)
-      engine->error(
-          R"(is "condensed", which needs a body of a constant stiffness; allowed where strains are finite or all bodies flow: auto, sparse)");
-  }
-  if (const auto backend = node.find("backend")) {
-    const std::map<std::string, Backend> all{{"auto", Backend::automatic},
-                                             {"cholmod", Backend::cholmod},
-                                             {"mumps", Backend::mumps},
-                                             {"eigen", Backend::eigen}};
-    std::vector<std::string> names;
-    for (const auto& [name, unused] : all) names.push_back(name);
-    const auto name = backend->choice(names);
-    if (!name) return;
-    input.backend = all.at(*name);
-    if (input.backend != Backend::automatic && !has_backend(input.backend))
-      backend->error("is " + in_quotes(*name) + ", which is not part of this build");
+void read_linear_solver(const JsonNode& node, SceneReading& reading, Input& input) {
+  const Scene& scene = reading.scene;
+  const auto given = read_described<LinearSolverObject>(node, reading);
+  if (!given) return;
+  input.linear_algebra.engine = given->engine;
+  input.backend = given->backend;
+  const auto remembers = [](const Body& body) { return flows(body.material); };
+  const bool none_constant = scene.finite_strain || (!scene.bodies.empty() &&
+                                                     std::all_of(scene.bodies.begin(), scene.bodies.end(), remembers));
+  if (given->engine == LinearAlgebra::Engine::condensed && none_constant)
+    node.find("engine")->error(
+        R"(is "condensed", which needs a body of a constant stiffness; allowed where strains are finite or all bodies flow: auto, sparse)");
+  if (input.backend != Backend::automatic && !has_backend(input.backend)) {
+    const JsonNode backend = *node.find("backend");
+    backend.error("is " + in_quotes(*backend.text()) + ", which is not part of this build");
   }
 }
 
@@ -78,13 +67,12 @@ void note_idle_obstacles(const JsonNode& node, SceneReading& reading) {
 }
 
 void read_sensitivity(const JsonNode& node, SceneReading& reading, Input& input) {
-  if (!node.is_object({{}, {"mode", "memory"}})) return;
+  const auto given = read_described<SensitivityObject>(node, reading);
+  if (!given) return;
+  input.state_memory = given->memory * megabyte;
   const auto mode = node.find("mode"), memory = node.find("memory");
-  const auto megabytes = memory ? memory->number(positive) : std::nullopt;
-  if (megabytes) input.state_memory = *megabytes * megabyte;
-  const auto chosen = mode ? mode->choice({"direct", "adjoint"}) : std::optional<std::string>("direct");
-  if (memory && chosen == "direct") memory->error_at_key(R"(belongs to "mode": "adjoint")");
-  if (chosen != "adjoint") return;
+  if (memory && (!mode || mode->value() == "direct")) memory->error_at_key(R"(belongs to "mode": "adjoint")");
+  if (given->mode == SensitivityMode::direct) return;
   reading.scene.sensitivity_mode = SensitivityMode::adjoint;
   if (reading.scene.objectives.empty() && !reading.diagnostics.has_error_in("/objectives"))
     mode->error(R"(is "adjoint", which differentiates the objectives, and the scene has none; add "objectives", )"
@@ -155,7 +143,7 @@ void read_parts(const JsonNode& root, SceneReading& reading, Input& input) {
   part("time", read_time);
   part("responses", read_responses);
   part("objectives", read_objectives);
-  if (const auto node = root.find("linear_solver")) read_linear_solver(*node, reading.scene, input);
+  if (const auto node = root.find("linear_solver")) read_linear_solver(*node, reading, input);
   if (const auto node = root.find("output")) read_output(*node, input.output);
   if (const auto node = root.find("sensitivity")) read_sensitivity(*node, reading, input);
 }

@@ -34,6 +34,15 @@ std::string exact_number(double value) {
   return number(value, digits);
 }
 
+std::string with_power(const std::string& numeral) {
+  const std::size_t e = numeral.find('e');
+  if (e == std::string::npos) return numeral;
+  const std::string factor = numeral.substr(0, e);
+  std::string out = factor == "1" ? "10" : factor == "-1" ? "-10" : factor + "·10";
+  for (const char c : numeral.substr(e + 1)) out += raised[lowered.find(c)];
+  return out;
+}
+
 std::string json_with_exact_numbers(const nlohmann::json& value) {
   if (value.is_number_float()) return exact_number(value.get<double>());
   if (!value.is_structured()) return json_text(value);

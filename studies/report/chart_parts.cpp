@@ -27,11 +27,8 @@ std::vector<std::string> owners_of(const Study& study) {
   return owners;
 }
 
-/// Okabe and Ito's palette, which stays apart for all common forms of colour vision; without its yellow, which is lost
-/// on white.
 std::string color_of(const Study& study, const std::string& family) {
-  static const std::map<std::string, std::string> fixed = {
-      {"penalty", "#D55E00"}, {"uzawa_al", "#0072B2"}, {"monolithic_al", "#009E73"}};
+  static const std::map<std::string, std::string> fixed(std::begin(method_colors), std::end(method_colors));
   static const std::vector<std::string> spare = {"#CC79A7", "#E69F00", "#56B4E9"};
   if (const auto found = fixed.find(family); found != fixed.end()) return found->second;
   std::size_t other = 0;

@@ -18,13 +18,6 @@ namespace {
 
 constexpr double much_faster = 1.25;  ///< seconds of runs this short vary by some 20 %
 
-std::vector<const Cell*> runs_of(const Study& study) {
-  std::vector<const Cell*> out;
-  for (const auto& cell : study.cells)
-    if (cell.variant == study.main_variant) out.push_back(&cell);
-  return out;
-}
-
 /// The options that tell a run from others of its row; "default" where there are none.
 std::string setting_of(const Cell& cell, const std::string& row) {
   std::string out;
@@ -114,7 +107,7 @@ double Measure::seconds(const Cell& cell) const {
 
 std::optional<Measure> measure_of(const Study& study, Of of) {
   Measure measure{.of = of, .ratio = study.ratio};
-  const auto runs = runs_of(study);
+  const auto runs = main_cells(study);
   const auto has_errors = [&] {
     return std::any_of(runs.begin(), runs.end(), [&](auto* c) { return measure.error(*c); });
   };
@@ -137,7 +130,7 @@ std::pair<std::vector<Row>, std::string> rows_of(const Study& study) {
   std::vector<Row> by_method, by_series;
   for (const auto& family : study.families) by_method.push_back({family_name(family), {}});
   const std::string knob = study.families.size() == 1 ? running_knob(study, study.families.front()) : "";
-  for (const Cell* cell : runs_of(study)) {
+  for (const Cell* cell : main_cells(study)) {
     const auto method = std::find(study.families.begin(), study.families.end(), cell->family) - study.families.begin();
     by_method[static_cast<std::size_t>(method)].runs.push_back(cell);
     const std::string series = series_of(*cell, knob);

@@ -3,8 +3,18 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace stickslip::report {
+
+// Okabe and Ito's palette, which stays apart for all common forms of colour vision; without its yellow, which is lost on
+// white. What cannot include this has copies that a test holds equal: studies/web/page.css, python/stickslip/plots.py.
+
+constexpr std::pair<const char*, const char*> method_colors[] = {
+    {"penalty", "#D55E00"}, {"uzawa_al", "#0072B2"}, {"monolithic_al", "#009E73"}};
+/// Of states of contact; closed: without friction.
+constexpr const char *stick_color = "#0072B2", *slip_color = "#E69F00", *closed_color = "#5b616b",
+                     *open_color = "#ffffff";
 
 constexpr std::string_view light_paper = "#ffffff", dark_paper = "#16181c";  ///< --paper of page.css
 

@@ -11,11 +11,13 @@
 #include <utility>
 
 #include "studies/io/result_rows.hpp"
+#include "studies/report/look_up.hpp"
 
 namespace stickslip {
 namespace {
 
 using nlohmann::json;
+using report::at, report::array_at, report::number_at, report::object_at, report::text_at;
 
 constexpr double negligible = 1e-5;  // of a response: results that differ by less are alike
 constexpr double headroom = 10;      // a response may be off by more than the error of a point
@@ -27,27 +29,19 @@ struct Answer {
   double value = 0, error = 0, scale = 0;
 };
 
-double number_of(const json& row, const std::string& group, const std::string& name) {
-  const auto found = row.find(group);
-  if (found == row.end() || !found->is_object()) return 0;
-  const auto value = found->find(name);
-  return value != found->end() && value->is_number() ? value->get<double>() : 0;
-}
-
 /// What the method was asked to reach: 1e-4 of {"uzawa_al": {"tolerance": 1e-4}}; 0 without one.
 double tolerance_of(const json& row) {
-  const auto method = row.find("method");
-  if (method == row.end() || !method->is_object() || method->empty()) return 0;
-  return number_of(*method, method->begin().key(), "tolerance");
+  const json& method = object_at(row, "method");
+  return method.empty() ? 0 : number_at(method.front(), "tolerance");
 }
 
 /// The largest method-blind error, or the tolerance of the method, as errors of many steps may add up; nothing if the
 /// row has no errors.
 std::optional<double> error_of(const json& row) {
-  const auto errors = row.find("errors");
-  if (errors == row.end() || !errors->is_object() || !errors->contains("kkt")) return std::nullopt;
+  const json& kkt = at(at(row, "errors"), "kkt");
+  if (kkt.is_null()) return std::nullopt;
   double largest = tolerance_of(row);
-  for (const auto& [name, error] : errors->at("kkt").items())
+  for (const json& error : kkt)
     if (error.is_number()) largest = std::max(largest, error.get<double>());
   return largest;
 }
@@ -81,10 +75,9 @@ std::string share(double x) { return x < 1e-3 ? fmt::format("{:.1g}", x) : fmt::
 
 /// "penalty stiffness=10"; of a row without a label its method.
 std::string label_of(const json& row) {
-  const std::string label = row.value("label", "");
-  const auto method = row.find("method");
-  return !label.empty() || method == row.end() || !method->is_object() || method->empty() ? label
-                                                                                          : method->begin().key();
+  const std::string label = text_at(row, "label");
+  const json& method = object_at(row, "method");
+  return !label.empty() || method.empty() ? label : method.begin().key();
 }
 
 /// Codes of warnings that may say why two runs differ.
@@ -93,9 +86,8 @@ std::string reasons(const Pair& pair) {
                                               "soft_penalty", "folded_element", "unstable"};
   std::set<std::string> codes;
   for (const auto* answer : {pair.a, pair.b})
-    if (const auto warnings = answer->row->find("warnings"); warnings != answer->row->end())
-      for (const auto& warning : *warnings)
-        if (const std::string code = warning.value("code", ""); known.count(code)) codes.insert(code);
+    for (const json& warning : array_at(*answer->row, "warnings"))
+      if (const std::string code = text_at(warning, "code"); known.count(code)) codes.insert(code);
   return fmt::format("{}", fmt::join(codes, ", "));
 }
 
@@ -104,12 +96,11 @@ std::string reasons(const Pair& pair) {
 std::vector<std::string> disagreements(const std::vector<const json*>& rows) {
   std::map<std::string, std::map<std::string, std::vector<Answer>>> answers;  // by response and variant
   for (const json* row : rows) {
-    const auto responses = row->find("responses");
     const auto error = error_of(*row);
-    if (!converged(*row) || !error || responses == row->end() || !responses->is_object()) continue;
-    for (const auto& [name, value] : responses->items())
+    if (!converged(*row) || !error) continue;
+    for (const auto& [name, value] : object_at(*row, "responses").items())
       if (value.is_number() && std::isfinite(value.get<double>()))
-        answers[name][variant_text(*row)].push_back({row, value, *error, number_of(*row, "scales", name)});
+        answers[name][variant_text(*row)].push_back({row, value, *error, number_at(at(*row, "scales"), name)});
   }
   std::vector<std::string> sentences;
   for (const auto& [name, by_variant] : answers) {

@@ -124,21 +124,25 @@ std::string Drawing::svg_file() const {
   return out + "</svg>\n";
 }
 
-Path marker(std::string_view shape, double x, double y) {
+Path marker(std::string_view shape, double x, double y, double size) {
   Path path;
+  const double r = 4 * size;
   const auto polygon = [&](std::initializer_list<std::pair<double, double>> corners) {
-    for (const auto& [dx, dy] : corners) path.empty() ? path.move(x + dx, y + dy) : path.line(x + dx, y + dy);
+    for (const auto& [dx, dy] : corners) {
+      const double to_x = x + size * dx, to_y = y + size * dy;
+      path.empty() ? path.move(to_x, to_y) : path.line(to_x, to_y);
+    }
     return path.close();
   };
-  if (shape == "square") return path.rectangle(x - 4, y - 4, 8, 8);
+  if (shape == "square") return path.rectangle(x - r, y - r, 2 * r, 2 * r);
   if (shape == "triangle-up") return polygon({{0, -5}, {5, 4}, {-5, 4}});
   if (shape == "triangle-down") return polygon({{0, 5}, {5, -4}, {-5, -4}});
   if (shape == "triangle-left") return polygon({{-5, 0}, {4, 5}, {4, -5}});
   if (shape == "triangle-right") return polygon({{5, 0}, {-4, 5}, {-4, -5}});
   if (shape == "diamond") return polygon({{0, -5}, {5, 0}, {0, 5}, {-5, 0}});
-  if (shape == "cross") return path.move(x - 4, y).line(x + 4, y).move(x, y - 4).line(x, y + 4);
-  if (shape == "failed") return path.move(x - 4, y - 4).line(x + 4, y + 4).move(x - 4, y + 4).line(x + 4, y - 4);
-  return path.circle(x, y, 4);
+  if (shape == "cross") return path.move(x - r, y).line(x + r, y).move(x, y - r).line(x, y + r);
+  if (shape == "failed") return path.move(x - r, y - r).line(x + r, y + r).move(x - r, y + r).line(x + r, y - r);
+  return path.circle(x, y, r);
 }
 
 }  // namespace stickslip::report

@@ -120,7 +120,7 @@ class Drawing {
 
 /// A marker of some 9 pixels by its name: circle, square, triangle-up (-down, -left, -right), diamond, cross (upright),
 /// failed (a diagonal cross).
-Path marker(std::string_view shape, double x, double y);
+Path marker(std::string_view shape, double x, double y, double size = 1);
 
 /// A text as LaTeX sets it.
 std::string tex_text(const std::string& text);

@@ -2,26 +2,22 @@
 
 #include <cmath>
 
+#include "studies/io/numerals.hpp"
 #include "studies/report/drawing.hpp"
 #include "studies/report/drawing_parts.hpp"
 
 namespace stickslip::report {
 namespace {
 
-/// "⁻" and the digits as they are raised, each with what it stands for.
-constexpr std::pair<std::string_view, char> raised[] = {{"⁻", '-'}, {"⁰", '0'}, {"¹", '1'}, {"²", '2'},
-                                                        {"³", '3'}, {"⁴", '4'}, {"⁵", '5'}, {"⁶", '6'},
-                                                        {"⁷", '7'}, {"⁸", '8'}, {"⁹", '9'}};
-
 /// The raised letters that `text` begins with, taken off it.
 std::string take_raised(std::string_view& text) {
   std::string out;
   for (bool more = true; more;) {
     more = false;
-    for (const auto& [letter, plain] : raised)
-      if (text.starts_with(letter)) {
-        out += plain;
-        text.remove_prefix(letter.size());
+    for (std::size_t i = 0; i < lowered.size(); ++i)
+      if (text.starts_with(raised[i])) {
+        out += lowered[i];
+        text.remove_prefix(raised[i].size());
         more = true;
       }
   }

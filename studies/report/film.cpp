@@ -6,6 +6,7 @@
 #include <set>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/colors.hpp"
 #include "studies/report/look_up.hpp"
 
 namespace stickslip::report {
@@ -43,10 +44,10 @@ struct Look {
   const char *words, *name, *fill;
 };
 /// Dark, middle and light, so that grey print tells them apart.
-constexpr std::array<Look, 4> looks = {{{'k', "sticks", "stick", "#0072B2"},
-                                        {'s', "slips", "slip", "#E69F00"},
+constexpr std::array<Look, 4> looks = {{{'k', "sticks", "stick", stick_color},
+                                        {'s', "slips", "slip", slip_color},
                                         {'c', "touches", "touches", "#7a7f87"},
-                                        {'o', "open", "open", "#ffffff"}}};
+                                        {'o', "open", "open", open_color}}};
 
 /// Those that occur; stick and slip go together.
 std::vector<Look> looks_of(const std::vector<Strip>& strips) {

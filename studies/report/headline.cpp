@@ -18,13 +18,6 @@ using nlohmann::json;
 
 namespace {
 
-std::vector<const Cell*> main_cells(const Study& study) {
-  std::vector<const Cell*> out;
-  for (const auto& cell : study.cells)
-    if (cell.variant == study.main_variant) out.push_back(&cell);
-  return out;
-}
-
 /// " for VARIANT"; "" where nothing is varied.
 std::string for_variant(const std::string& variant) { return variant.empty() ? "" : " for " + variant; }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "studies/report/colors.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 
@@ -19,17 +20,15 @@ namespace {
 /// `size`: a share of the full one.
 void draw_state(const std::string& state, double x, double y, double size, const std::string& tooltip,
                 Drawing& drawing) {
-  const double half = 3.5 * size, line = 0.8 * size;
+  const auto mark = [&](const char* shape, double share, const char* stroke, const char* fill) {
+    drawing.path(marker(shape, x, y, share * size), {stroke, fill, 0.8 * size, {}}, tooltip);
+  };
   if (state == "stick")
-    drawing.path(Path().rectangle(x - half, y - half, 2 * half, 2 * half), {"#ffffff", "#0072B2", line, {}}, tooltip);
+    mark("square", 0.875, "#ffffff", stick_color);
   else if (state == "slip")
-    drawing.path(
-        Path().move(x, y - 5 * size).line(x + 4.5 * size, y + 3 * size).line(x - 4.5 * size, y + 3 * size).close(),
-        {"#000000", "#E69F00", line, {}}, tooltip);
-  else if (state == "closed")
-    drawing.path(Path().circle(x, y, 3 * size), {"#000000", "#5b616b", line, {}}, tooltip);
+    mark("triangle-up", 0.9, "#000000", slip_color);
   else
-    drawing.path(Path().circle(x, y, 3 * size), {"#333333", "#ffffff", 1.2 * line, {}}, tooltip);
+    mark("circle", 0.75, state == "closed" ? "#000000" : "#333333", state == "closed" ? closed_color : open_color);
 }
 
 /// The size of symbols of which neighbours do not cover one another: by the median way from one to the next, since they

@@ -83,17 +83,6 @@ std::optional<Frame> frame_of(const Figure& figure, const Chart& chart, double w
                ground_of(rows, chart)};
 }
 
-/// "2·10⁻⁴" of "2e-4".
-std::string with_power(const std::string& numeral) {
-  static const char* const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  const std::size_t e = numeral.find('e');
-  if (e == std::string::npos) return numeral;
-  const std::string factor = numeral.substr(0, e);
-  std::string out = factor == "1" ? "10" : factor == "-1" ? "-10" : factor + "·10";
-  for (const char c : numeral.substr(e + 1)) out += c == '-' ? "⁻" : raised[c - '0'];
-  return out;
-}
-
 /// Ticks with their labels, in as many digits as tell them apart.
 std::vector<std::pair<double, std::string>> labelled(const std::vector<double>& ticks) {
   constexpr int fewest = 3, most = 12;

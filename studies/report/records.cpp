@@ -312,6 +312,13 @@ std::vector<std::pair<std::string, json>> linked_lists(const json& description) 
   return linked;
 }
 
+std::vector<const Cell*> main_cells(const Study& study) {
+  std::vector<const Cell*> out;
+  for (const auto& cell : study.cells)
+    if (cell.variant == study.main_variant) out.push_back(&cell);
+  return out;
+}
+
 Study of_scene(const Study& all, const std::string& file) {
   Study study = all;
   std::erase_if(study.cells, [&](const Cell& cell) { return cell.file != file; });

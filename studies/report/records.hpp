@@ -11,10 +11,10 @@
 
 namespace stickslip::report {
 
-/// One swept option of a method and the value this cell gave it.
 /// Errors of a response below this are what sixteen digits leave after a solve, and order no runs.
 constexpr double rounding_error = 1e-12;
 
+/// One swept option of a method and the value this cell gave it.
 struct Knob {
   std::string name;             ///< option name; "NAME (absolute)" where the value is {"absolute": number}
   std::string text;             ///< the value as shown
@@ -94,6 +94,9 @@ double ratio_of(const std::map<std::string, double>& ratio, const Cell& cell);
 
 /// The lists that a study varies together, by name, from its description.
 std::vector<std::pair<std::string, nlohmann::json>> linked_lists(const nlohmann::json& description);
+
+/// The cells of the main variant, in recorded order.
+std::vector<const Cell*> main_cells(const Study& study);
 
 /// What a study has of one of its scenes.
 Study of_scene(const Study& all, const std::string& file);

@@ -212,8 +212,8 @@ void write_report(const std::filesystem::path& directory, Pdfs pdfs) try {
                page(title.empty() ? "Frictional contact study" : title, first, sections_of(study, shown, figures)));
   write_figures(directory, figures.figures, figures.plates, pdfs);
 } catch (const json::exception& error) {  // rows have checksums; what else is recorded may have been edited
-  throw InputFault(directory.string() + ": study.json, picture.json or rows without a checksum hold what stickslip " +
-                   "does not write (" + error.what() + "); delete them, and resume the study");
+  throw not_written(directory.string() + ": study.json, picture.json or rows without a checksum", error,
+                    "; delete them, and resume the study");
 }
 
 void write_run_report(const std::filesystem::path& directory, Pdfs pdfs) try {
@@ -226,8 +226,7 @@ void write_run_report(const std::filesystem::path& directory, Pdfs pdfs) try {
                page(title.empty() ? "Frictional contact" : title, first, sections_of_run(run, figures)));
   write_figures(directory, figures.figures, figures.plates, pdfs);
 } catch (const json::exception& error) {  // it may have been edited
-  throw InputFault(directory.string() + ": result.json or picture.json hold what stickslip does not write (" +
-                   error.what() + "); run the scene again with --report");
+  throw not_written(directory.string() + ": result.json or picture.json", error, "; run the scene again with --report");
 }
 
 }  // namespace stickslip

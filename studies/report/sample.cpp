@@ -36,17 +36,10 @@ std::vector<Item> evenly(const std::vector<Item>& all, std::size_t most) {
   return out;
 }
 
-std::vector<const Cell*> cells_of_main_variant(const Study& study) {
-  std::vector<const Cell*> out;
-  for (const auto& cell : study.cells)
-    if (cell.variant == study.main_variant) out.push_back(&cell);
-  return out;
-}
-
 /// Of a main variant that is too large: the runs that are named elsewhere on the page, and others evenly spaced.
 std::set<const Cell*> some_of_main_variant(const Study& study, std::size_t most) {
   std::set<const Cell*> out;
-  const auto cells = cells_of_main_variant(study);
+  const auto cells = main_cells(study);
   const auto labels = telling_cells(study, Furthest::added);
   for (const Cell* cell : cells)
     if (std::find(labels.begin(), labels.end(), cell->label) != labels.end()) out.insert(cell);

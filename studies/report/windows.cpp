@@ -104,11 +104,7 @@ std::string short_times(double times) {
   return fmt::format("{:.{}f}", times, times >= is_one && times < is_ten ? 1 : 0);
 }
 
-/// Around a mark.
-Path diamond(double x, double y) {
-  constexpr double reach = 9.5;
-  return Path().move(x, y - reach).line(x + reach, y).line(x, y + reach).line(x - reach, y).close();
-}
+constexpr double around = 1.9;  ///< size of a diamond around a mark
 
 std::string in_words(const Run& run) {
   std::string out = number(run.knob) + (run.automatic ? " (automatic)" : "") + ": " + run.cell->status;
@@ -136,7 +132,8 @@ void draw_window(const Window& window, const Series& looks, const Axis& x, std::
                    {color, !target || (error && *error <= *target) ? color : "paper", 2, {}}, in_words(run));
   }
   const Run* automatic = automatic_of(window);
-  if (automatic) drawing.path(diamond(x(automatic->knob), y), {"ink", "", 2, {}}, in_words(*automatic));
+  if (automatic)
+    drawing.path(marker("diamond", x(automatic->knob), y, around), {"ink", "", 2, {}}, in_words(*automatic));
   double free = left;  // up to where the words so far reach
   for (const auto& run : window.runs) {
     if (!run.times || (automatic && run.knob == automatic->knob && &run != automatic)) continue;
@@ -174,7 +171,7 @@ double draw_legend(std::optional<double> target, bool automatic, double y, Drawi
   drawing.path(marker("failed", left + next, y), {"ink", "", 2, {}});
   drawing.text(left + next + 12, y + 4, "failed");
   if (automatic) {
-    drawing.path(diamond(left + next + 70, y), {"ink", "", 2, {}});
+    drawing.path(marker("diamond", left + next + 70, y, around), {"ink", "", 2, {}});
     drawing.text(left + next + 86, y + 4, "automatic");
   }
   y += line;

@@ -7,6 +7,7 @@
 #include <set>
 #include <system_error>
 
+#include "studies/input/small_objects.hpp"
 #include "studies/sweep/cell_inputs.hpp"
 #include "studies/sweep/study_reading.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double most_cells = 100'000;  ///< of a study
-constexpr int most_rounds = 1000;       ///< of the timing pass: the least of so many is as good as it gets
 
 /// A scene that the study names, by its path from the study's file. None where it cannot be read.
 std::optional<JsonDocument> scene_beside(const std::string& file, const JsonNode& node, Diagnostics& diagnostics) {
@@ -102,21 +102,18 @@ void check_accuracies(const JsonNode& node) {
 }
 
 /// Rounds of the timing pass; 0: there is none.
-int read_rounds(const JsonNode& node) {
-  const auto repeat = node.is_object({{}, {"repeat"}}) ? node.find("repeat") : std::nullopt;
-  return repeat ? repeat->count(1, most_rounds).value_or(0) : 0;
+int read_rounds(const JsonNode& node, Diagnostics& diagnostics) {
+  return read_described<TimingObject>(node, diagnostics).value_or(TimingObject()).repeat.value_or(0);
 }
 
 /// How many copies the error budget takes; 0: none is asked for.
-int read_budget(const JsonNode& node) {
-  constexpr int standard = 4, fewest = 2, most = 64;
-  if (node.value().is_boolean()) return node.value().get<bool>() ? standard : 0;
+int read_budget(const JsonNode& node, Diagnostics& diagnostics) {
+  if (node.value().is_boolean()) return node.value().get<bool>() ? ErrorBudgetObject().copies : 0;
   if (!node.value().is_object()) {
     node.must_be(R"(true, false, or {"copies": n})");
     return 0;
   }
-  const auto copies = node.is_object({{}, {"copies"}}) ? node.find("copies") : std::nullopt;
-  return copies ? copies->count(fewest, most).value_or(standard) : standard;
+  return read_described<ErrorBudgetObject>(node, diagnostics).value_or(ErrorBudgetObject()).copies;
 }
 
 /// How many combinations there are, in a double, which does not overflow.
@@ -158,8 +155,8 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
   read_lists_of_all(study, diagnostics);
   if (const auto solutions = root.find("solutions")) study.solutions = read_solutions(*solutions, file);
   if (const auto accuracy = root.find("accuracy")) check_accuracies(*accuracy);
-  if (const auto timing = root.find("timing")) study.repeat = read_rounds(*timing);
-  if (const auto budget = root.find("error_budget")) study.budget_copies = read_budget(*budget);
+  if (const auto timing = root.find("timing")) study.repeat = read_rounds(*timing, diagnostics);
+  if (const auto budget = root.find("error_budget")) study.budget_copies = read_budget(*budget, diagnostics);
   if (const double count = cell_count(study); count > most_cells) {  // too many to look at each of their values
     root.error(fmt::format("makes {:.0f} cells of all its lists; allowed: {:.0f} at most", count, most_cells));
     return std::nullopt;

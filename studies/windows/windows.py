@@ -8,7 +8,6 @@ its window and takes at most 1.5 times the least iterations, 3 if not, 2 bad inp
 what it writes.
 """
 
-import argparse
 import csv
 import json
 import shutil
@@ -18,6 +17,9 @@ from pathlib import Path
 from time import monotonic
 
 HERE = Path(__file__).resolve().parent
+sys.path.append(str(HERE.parent))
+from suite import InputError, find_program, parser_of  # noqa: E402
+
 SCENES = tuple(sorted(path.name.removesuffix(".study.json") for path in HERE.glob("*.study.json")))
 STRAINS = ("small", "finite")
 ALLOWED = 1.5
@@ -27,25 +29,11 @@ COLUMNS = ("scene", "strain", "method", "friction", "steps", "from", "to", "auto
            "times")
 
 
-class InputError(Exception):
-    """Bad arguments; exit code 2."""
-
-
 def arguments(argv):
-    parser = argparse.ArgumentParser(prog="windows.py", description=__doc__.splitlines()[0])
-    parser.add_argument("program", nargs="?", default="stickslip", metavar="PROGRAM")
-    parser.add_argument("-o", "--output", default="results/windows", metavar="DIR", help="by default results/windows")
+    parser = parser_of("windows", __doc__)
     parser.add_argument("--only", action="append", choices=SCENES, metavar="NAME", help="a scene, several times")
     parser.add_argument("--strain", choices=STRAINS, help="one of the strains, by default both")
-    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="runs at a time, by default 2")
     return parser.parse_args(argv)
-
-
-def find_program(name):
-    path = shutil.which(name) or (name if Path(name).is_file() else None)
-    if path is None:
-        raise InputError(f'there is no program "{name}"; build it, and name its path')
-    return str(Path(path).resolve())
 
 
 def write_scene(name, strain, folder):

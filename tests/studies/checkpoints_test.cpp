@@ -8,6 +8,7 @@
 #include "studies/run/simulation.hpp"
 #include "studies/run/warnings.hpp"
 #include "tests/studies/cases.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip {
 namespace {
@@ -31,25 +32,20 @@ json long_scene(const std::string& name, double megabytes) {
 struct Done {
   Simulation simulation;
   CaseResult result;
-  std::string name;
   explicit Done(const json& document, const std::string& scene)
-      : simulation{cases::read(document, scene_folder / (scene + ".json")), nullptr}, name(scene) {
+      : simulation{cases::read(document, scene_folder / (scene + ".json")), nullptr} {
     simulation.problem = std::make_shared<const Problem>(simulation.input.scene);
     result = simulate(simulation);
   }
   long count(const char* name) const { return cost_json(result)["counts"][name]; }
   /// Names and contents of the files of fields.
   std::map<std::string, std::string> fields() const {
-    // (by its name: tests of other scenes run beside it)
-    const fs::path directory = fs::path(testing::TempDir()) / ("fields_of_let_go_" + name);
-    fs::remove_all(directory);
-    fs::create_directories(directory);
-    write_result(directory, simulation, result);
+    const TemporaryFolder own;
+    write_result(own.path, simulation, result);
     std::map<std::string, std::string> files;
-    for (const auto& entry : fs::directory_iterator(directory))
+    for (const auto& entry : fs::directory_iterator(own.path))
       if (entry.path().filename().string().starts_with("fields"))
         files[entry.path().filename()] = read_file(entry.path());
-    fs::remove_all(directory);
     return files;
   }
 };

@@ -8,6 +8,7 @@
 #include "studies/run/fields.hpp"
 #include "studies/run/run_files.hpp"
 #include "tests/studies/cases.hpp"
+#include "tests/studies/temporary_folder.hpp"
 #include "tests/studies/vtu_reader.hpp"
 
 namespace stickslip::contact_fields {
@@ -19,12 +20,9 @@ struct Fields {
   CaseResult result;
   std::string file;
   explicit Fields(const json& scene) : result(cases::run(scene, {{"monolithic_al", json::object()}}, "scene.json")) {
-    const auto folder =
-        std::filesystem::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder);
-    write_fields(folder, result, 0);
-    file = read_file(folder / ("fields_000" + std::to_string(result.steps.size()) + ".vtu"));
-    std::filesystem::remove_all(folder);
+    const TemporaryFolder own;
+    write_fields(own.path, result, 0);
+    file = read_file(own.path / ("fields_000" + std::to_string(result.steps.size()) + ".vtu"));
   }
   std::vector<double> array(const std::string& name) const { return vtu::array_named(file, name).values<double>(); }
 };

@@ -8,22 +8,15 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/studies/temporary_folder.hpp"
+
 namespace stickslip {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Tests run beside one another, each in a process of its own.
-fs::path directory_of_the_test() {
-  return fs::path(testing::TempDir()) / ("stickslip_directory_locks_" + std::to_string(::getpid()));
-}
-
-/// A directory of results, gone with the test.
-class DirectoryLocks : public testing::Test {
+class DirectoryLocks : public InOwnFolder {
  protected:
-  DirectoryLocks() { fs::remove_all(directory_); }
-  ~DirectoryLocks() override { fs::remove_all(directory_); }
-
   /// The signal that ended a process in which this was done; 0 where none did.
   template <class F>
   static int signal_that_ends(F&& work) {
@@ -37,7 +30,7 @@ class DirectoryLocks : public testing::Test {
     return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   }
 
-  const fs::path directory_ = directory_of_the_test(), file_ = directory_ / ".lock";
+  const fs::path directory_ = folder_ / "results", file_ = directory_ / ".lock";
 };
 
 TEST_F(DirectoryLocks, LeaveNoFileBehind) {

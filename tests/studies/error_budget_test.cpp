@@ -11,6 +11,7 @@
 
 #include "studies/sweep/budget_runs.hpp"
 #include "studies/sweep/study_cell.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip {
 namespace {
@@ -108,13 +109,10 @@ TEST(BudgetRuns, CutTheStepsOfEveryLeg) {
   }
 }
 
-class ErrorBudget : public testing::Test {
+class ErrorBudget : public InOwnFolder {
  protected:
-  ~ErrorBudget() override { std::filesystem::remove_all(folder_); }
-
   /// The rows of a study; a fault fails the test. `scene` is one of the shipped ones, in which `change` may be made.
   std::vector<json> rows(const std::string& scene, json study, const json& change = json::object()) {
-    std::filesystem::create_directories(folder_);
     const auto scenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
     json document = json::parse(std::ifstream(scenes / scene), nullptr, true, true);
     document.merge_patch(change);
@@ -135,9 +133,6 @@ class ErrorBudget : public testing::Test {
   }
 
   long runs_ = 0;  ///< of the last study
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("stickslip_budget_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
 /// As the study asks for: within .8 to 1.25.

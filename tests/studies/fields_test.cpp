@@ -14,6 +14,7 @@
 #include "studies/run/picture_json.hpp"
 #include "studies/run/run_files.hpp"
 #include "tests/studies/cases.hpp"
+#include "tests/studies/temporary_folder.hpp"
 #include "tests/studies/vtu_reader.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -45,13 +46,9 @@ struct WrittenFields {
   State<double>& state() { return result.trajectory.increments[0].state; }
   /// The .vtu of the step.
   std::string file() const {
-    const auto folder =
-        std::filesystem::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder);
-    write_fields(folder, result, 0);
-    const std::string text = read_file(folder / "fields_0001.vtu");
-    std::filesystem::remove_all(folder);
-    return text;
+    const TemporaryFolder own;
+    write_fields(own.path, result, 0);
+    return read_file(own.path / "fields_0001.vtu");
   }
   std::vector<double> array(const std::string& name) const { return vtu::array_named(file(), name).values<double>(); }
 };
@@ -286,11 +283,9 @@ TEST(Fields, ADiskBetweenTwoPlatesTouchesBoth) {
     force -= result.problem->slots.geometry[p].area * field.traction[model.points[p].multiplier];
   }
   ASSERT_GE(closed, 2);
-  const auto folder = std::filesystem::path(testing::TempDir()) / "disk_between_plates";
-  std::filesystem::create_directories(folder);
-  write_fields(folder, result, 0);
-  const std::string file = read_file(folder / "fields_0002.vtu");
-  std::filesystem::remove_all(folder);
+  const TemporaryFolder own;
+  write_fields(own.path, result, 0);
+  const std::string file = read_file(own.path / "fields_0002.vtu");
   const auto state = vtu::array_named(file, "contact_state").values<double>(),
              pressure = vtu::array_named(file, "contact_pressure").values<double>();
   EXPECT_EQ(std::count_if(state.begin(), state.end(), [](double code) { return code > 0; }), closed);

@@ -10,6 +10,7 @@
 #include "studies/run/run_files.hpp"
 #include "studies/run/simulation.hpp"
 #include "tests/studies/cases.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip {
 namespace {
@@ -298,9 +299,8 @@ TEST(Ledger, CountsWhatIsWritten) {
   Diagnostics diagnostics;
   const auto simulation = prepare((shipped_folder / "belt.json").string(), {}, std::nullopt, diagnostics);
   ASSERT_TRUE(simulation) << diagnostics.text();
-  const fs::path directory = fs::path(testing::TempDir()) / "ledger_files";
-  fs::remove_all(directory);
-  fs::create_directories(directory);
+  const TemporaryFolder own;
+  const fs::path& directory = own.path;
   const auto result = simulate(*simulation);
   const json written = write_result(directory, *simulation, result)["ledger"].back();
   double bytes = 0, files = 1;

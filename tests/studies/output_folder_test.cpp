@@ -11,6 +11,7 @@
 #include "studies/io/atomic_file.hpp"
 #include "studies/report/report.hpp"
 #include "studies/sweep/run_study.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip::output_folder {
 namespace {
@@ -19,15 +20,8 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A folder that is gone with the test.
-class OutputFolders : public testing::Test {
+class OutputFolders : public InOwnFolder {
  protected:
-  OutputFolders() {
-    std::string pattern = (fs::path(testing::TempDir()) / "stickslip_output_XXXXXX").string();
-    if (::mkdtemp(pattern.data())) folder_ = pattern;
-  }
-  ~OutputFolders() override { fs::remove_all(folder_); }
-
   /// Why the folder is refused; "" where it is not.
   static std::string refusal(const fs::path& folder, const std::vector<std::string>& names) {
     try {
@@ -42,8 +36,6 @@ class OutputFolders : public testing::Test {
   void put(const std::string& name, const std::string& text = "mine") const {
     write_file_atomically(folder_ / name, text);
   }
-
-  fs::path folder_;
 };
 
 /// Files of all names and kinds: what is in the way of a study is named, and nothing is touched.

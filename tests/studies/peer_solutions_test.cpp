@@ -11,6 +11,7 @@
 #include "studies/run/certificate.hpp"
 #include "studies/run/solution_file.hpp"
 #include "studies/sweep/study_cell.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip::peer_solutions {
 namespace {
@@ -50,17 +51,15 @@ json peer_of(const CaseResult& result, const json& scene) {
   return peer;
 }
 
-class PeerSolutions : public testing::Test {
+class PeerSolutions : public InOwnFolder {
  protected:
   PeerSolutions() {
-    std::filesystem::create_directories(folder_);
     write("scene.json", scene_of(0.3));
     const auto [study, cells] = read({{"methods", {{{"monolithic_al", json::object()}}}}});
     CellRunner runner(study, cells, meshes_);
     peer_ = peer_of(runner.showcase(0), input_of(cells[0], meshes_).document);
     write("peer.json", peer_);
   }
-  ~PeerSolutions() override { std::filesystem::remove_all(folder_); }
 
   void write(const char* name, const json& content) { std::ofstream(folder_ / name) << content.dump(); }
 
@@ -88,9 +87,6 @@ class PeerSolutions : public testing::Test {
     return diagnostics_.text();
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("stickslip_peer_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
   MeshFiles meshes_;
   Diagnostics diagnostics_;
   json peer_;

@@ -1,11 +1,8 @@
 #include "tests/studies/recorded_study.hpp"
 
-#include <fmt/core.h>
-#include <unistd.h>
-
 #include <fstream>
-#include <sstream>
 
+#include "studies/io/atomic_file.hpp"
 #include "studies/report/report.hpp"
 
 namespace stickslip::recorded {
@@ -102,16 +99,6 @@ json picture() {
           {"body_names", {"block"}}};
 }
 
-StudyOnDisk::StudyOnDisk() {
-  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  directory_ = std::filesystem::path(testing::TempDir()) /
-               fmt::format("stickslip_{}_{}_{}", ::getpid(), test->test_suite_name(), test->name());
-  std::filesystem::remove_all(directory_);
-  std::filesystem::create_directories(directory_);
-}
-
-StudyOnDisk::~StudyOnDisk() { std::filesystem::remove_all(directory_); }
-
 void StudyOnDisk::record(const json& study, const std::vector<json>& cells, const json& picture) {
   std::ofstream(directory_ / "study.json") << study.dump();
   if (!picture.is_null()) std::ofstream(directory_ / "picture.json") << picture.dump();
@@ -121,10 +108,7 @@ void StudyOnDisk::record(const json& study, const std::vector<json>& cells, cons
 
 std::string StudyOnDisk::page() {
   write_report(directory_);
-  std::ifstream in(directory_ / "report.html");
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
+  return read_file(directory_ / "report.html");
 }
 
 report::Study StudyOnDisk::study() { return report::read_study(directory_); }

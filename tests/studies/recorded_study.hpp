@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "studies/report/records.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip::recorded {
 
@@ -32,16 +33,13 @@ json description();
 json picture();
 
 /// A directory of its own for each test.
-class StudyOnDisk : public testing::Test {
+class StudyOnDisk : public InOwnFolder {
  protected:
-  StudyOnDisk();
-  ~StudyOnDisk() override;
-
   void record(const json& study, const std::vector<json>& cells, const json& picture = nullptr);
   std::string page();
   report::Study study();
 
-  std::filesystem::path directory_;
+  const std::filesystem::path& directory_ = folder_;
 };
 
 }  // namespace stickslip::recorded

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 
+#include "studies/io/atomic_file.hpp"
 #include "studies/report/charts.hpp"
 #include "studies/report/colors.hpp"
 #include "studies/report/embedded.hpp"
@@ -268,6 +269,20 @@ TEST_F(ReportCharts, CurvesStandOutFromBothPapers) {
   EXPECT_NEAR(report::contrast("#000000", "#ffffff"), 21, 1e-12);
   for (const std::string_view paper : {report::light_paper, report::dark_paper})
     EXPECT_NE(std::string(report::embedded::page_css()).find("--paper: " + std::string(paper)), std::string::npos);
+}
+
+TEST(ReportColors, AreThoseOfTheirCopies) {
+  const std::string css = read_file(STICKSLIP_SOURCE_DIR "/studies/web/page.css");
+  const std::string python = read_file(STICKSLIP_SOURCE_DIR "/studies/python/stickslip/plots.py");
+  for (const auto& [method, color] : report::method_colors) {
+    EXPECT_THAT(css, HasSubstr(fmt::format("--{}: {};", method, color)));
+    EXPECT_THAT(python, HasSubstr(fmt::format("\"{}\": \"{}\"", method, color)));
+  }
+  for (const auto& [place, color] : {std::pair{".state.stick { fill: ", report::stick_color},
+                                     {"--shear: ", report::slip_color},
+                                     {"--closed: ", report::closed_color},
+                                     {".state.open { fill: ", report::open_color}})
+    EXPECT_THAT(css, HasSubstr(std::string(place) + color));
 }
 
 }  // namespace

@@ -276,6 +276,21 @@ TEST_F(ReportFiles, PdfsAreMadeOnRequest) {
   EXPECT_EQ(file(name), "");
 }
 
+/// A response whose name stands at an axis, as a reader finds it in the PDF.
+TEST_F(ReportFiles, PdfsHoldAccentsAndGreekLetters) {
+  if (!output_of({"rsvg-convert", "--version"}, {})) GTEST_SKIP() << "rsvg-convert is not here: librsvg2-bin";
+  if (!output_of({"pdftotext", "-v"}, {})) GTEST_SKIP() << "pdftotext is not here: poppler-utils";
+  const std::string name = "Kraft é φ";
+  auto cells = three_methods();
+  for (auto& c : cells)
+    c["steps"] = {{{"time", 0.5}, {"responses", {{name, 1}}}}, {{"time", 1}, {"responses", {{name, 2}}}}};
+  record(description(), cells);
+  write_report(directory_, Pdfs::added);
+  const auto text = output_of(
+      {"pdftotext", (directory_ / "figures" / "response-histories-response-over-time.pdf").string(), "-"}, {});
+  EXPECT_THAT(text.value_or(""), HasSubstr(name));
+}
+
 TEST(OtherPrograms, AreRunWithoutAShell) {
   EXPECT_EQ(output_of({"printenv", "STICKSLIP_TEST"}, {{"STICKSLIP_TEST", "$HOME; a b"}}), "$HOME; a b\n");
   EXPECT_EQ(output_of({"false"}, {}), std::nullopt);

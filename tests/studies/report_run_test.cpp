@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "studies/io/atomic_file.hpp"
 #include "studies/report/report.hpp"
 #include "studies/run/fields.hpp"
 #include "studies/run/film.hpp"
@@ -40,14 +41,10 @@ class ReportOfARun : public recorded::StudyOnDisk {
     return written();
   }
   /// A file of its figures.
-  std::string text_of(const std::string& name) const {
-    std::ifstream in(directory_ / "figures" / name);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string text_of(const std::string& name) const { return read_file(directory_ / "figures" / name); }
   std::string written() {
     write_run_report(directory_);
-    std::ifstream in(directory_ / "report.html");
-    return recorded::without_scripts({std::istreambuf_iterator<char>(in), {}});
+    return recorded::without_scripts(read_file(directory_ / "report.html"));
   }
 };
 

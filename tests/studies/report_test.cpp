@@ -8,7 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "studies/app/compare_studies.hpp"
+#include "studies/io/atomic_file.hpp"
+#include "studies/io/result_rows.hpp"
 #include "studies/report/charts.hpp"
+#include "studies/report/disagreement.hpp"
 #include "studies/report/headline.hpp"
 #include "studies/report/records.hpp"
 #include "studies/report/sample.hpp"
@@ -211,6 +215,19 @@ TEST_F(Report, WritesAPageFromRowsThatHoldNextToNothing) {
   EXPECT_THAT(page(), AllOf(HasSubstr("Penalty"), HasSubstr("Uzawa AL"), HasSubstr("Frictional contact study")));
 }
 
+/// Rows as 0.1.0 wrote them: no checksum, ledger, hash of the scene or curves of the contact; warnings are texts.
+TEST_F(Report, OpensWhatAnEarlierVersionRecorded) {
+  std::filesystem::copy(STICKSLIP_SOURCE_DIR "/tests/studies/earlier_study", directory_,
+                        std::filesystem::copy_options::recursive);
+  EXPECT_THAT(page(), AllOf(HasSubstr("an earlier study"), HasSubstr("Monolithic AL"), HasSubstr("stiffness=100")));
+  const auto rows = read_rows(directory_).rows;
+  ASSERT_EQ(rows.size(), 2u);
+  const auto cells = compare_rows(rows, rows, {});
+  EXPECT_EQ(cells.size(), 2u);
+  for (const auto& cell : cells) EXPECT_TRUE(cell.changes.empty());
+  EXPECT_TRUE(disagreements({&rows.begin()->second, &rows.rbegin()->second}).empty());
+}
+
 TEST_F(Report, SaysWhichLinesAreNoRowsAndShowsNothingOfThem) {
   auto cells = three_methods();
   cells[0]["label"] = "a damaged label";
@@ -254,8 +271,7 @@ TEST_F(Report, SaysWhichFileIsMissingOrBroken) {
   const std::string before = page();
   std::ofstream(directory_ / "study.json") << "{";
   EXPECT_THAT(message(), HasSubstr("study.json"));
-  std::ifstream in(directory_ / "report.html");
-  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), before);  // the former report stands
+  EXPECT_EQ(read_file(directory_ / "report.html"), before);  // the former report stands
 }
 
 /// 4000 runs in 100 scenes: the page shows some of them run by run, and says so.

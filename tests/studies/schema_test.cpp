@@ -4,7 +4,6 @@
 #include "studies/app/schema.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -17,6 +16,7 @@
 #include "studies/input/scene_reader.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/sweep/study_reader.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip {
 namespace {
@@ -292,8 +292,8 @@ TEST(Schema, NamesTheDefaultsOfTheReader) {
 #ifdef STICKSLIP_PYTHON_WITH_JSONSCHEMA
 /// Runs Python's jsonschema: every document of `valid` must pass, every one of `invalid` must not.
 void validate(const json& schema, const json& valid, const json& invalid) {
-  const fs::path folder = fs::temp_directory_path() / ("stickslip_schema_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
+  const TemporaryFolder own;
+  const fs::path& folder = own.path;
   std::ofstream(folder / "all.json") << json{{"schema", schema}, {"valid", valid}, {"invalid", invalid}};
   std::ofstream(folder / "check.py") << R"(
 import json, sys
@@ -308,7 +308,6 @@ sys.exit("\n".join(wrong) if wrong else 0)
   const std::string command = std::string("\"") + STICKSLIP_PYTHON_WITH_JSONSCHEMA + "\" \"" +
                               (folder / "check.py").string() + "\" \"" + (folder / "all.json").string() + "\"";
   EXPECT_EQ(std::system(command.c_str()), 0);
-  fs::remove_all(folder);
 }
 
 TEST(Schema, TakesEveryShippedFileAndRefusesUnknownKeysInIt) {
@@ -398,61 +397,6 @@ TEST(Schema, RefusesASampleOfWhatTheReaderRefuses) {
   validate(scene_schema(), json::array(), invalid);
 }
 #endif
-
-/// A scene of one contact, with a law of friction as the file has it.
-json scene_with_friction(const json& law) {
-  json scene = json::parse(R"({
-    "bodies": {"mass": {"mesh": {"point": {"at": [0, 0]}}, "material": {"grounded_spring": {"stiffness": [[1, 0], [0, 1]]}}}},
-    "obstacles": {"floor": {"plane": {"point": [0, 0], "normal": [0, 1]}}},
-    "contacts": {"sole": {"slave": "mass.node", "master": "floor"}},
-    "time": {"end": 1, "steps": 1}, "method": {"penalty": {}}})");
-  scene["contacts"]["sole"]["friction"] = law;
-  return scene;
-}
-
-/// The description of law `i` of FrictionLaws, its schema and its reader, one against another.
-template <std::size_t i>
-void expect_law_agrees(const json& schemas) {
-  using Law = std::variant_alternative_t<i, FrictionLaws<Number>>;
-  const json& schema = schemas.at(1 + i);  // (behind the number alone)
-  json all = json::object(), required = json::array();
-  std::apply(
-      [&](const auto&... number) {
-        (all.emplace(number.key, schema["properties"][number.key]["examples"][0]), ...);
-        ((number.is_required ? required.push_back(number.key) : void()), ...);
-      },
-      Law::numbers());
-  EXPECT_EQ(schema["properties"].size(), all.size()) << schema;
-  EXPECT_EQ(schema["required"], required);
-  EXPECT_TRUE(faults(scene_with_friction(all)).empty()) << all;
-  for (const auto& [key, example] : all.items()) {
-    json lacking = all, negative = all;
-    lacking.erase(key);
-    negative[key] = -1;
-    const bool may_lack = std::find(required.begin(), required.end(), key) == required.end();
-    EXPECT_EQ(faults(scene_with_friction(lacking)).empty(), may_lack) << key;
-    EXPECT_FALSE(faults(scene_with_friction(negative)).empty()) << key;
-  }
-  json more = all;
-  more["unknown"] = 1;
-  EXPECT_FALSE(faults(scene_with_friction(more)).empty()) << more;
-}
-
-TEST(Schema, OfEachLawOfFrictionIsWhatItsReaderTakes) {
-  const json schema = scene_schema();
-  const json& friction = schema["properties"]["contacts"]["additionalProperties"]["properties"]["friction"]["anyOf"];
-  constexpr auto count = std::variant_size_v<FrictionLaws<Number>>;
-  ASSERT_EQ(friction.size(), 1 + count);
-  [&]<std::size_t... i>(std::index_sequence<i...>) { (expect_law_agrees<i>(friction), ...); }
-  (std::make_index_sequence<count>());
-}
-
-TEST(Schema, HasAKeyForEachMaterialAndSurface) {
-  const json schema = scene_schema();
-  EXPECT_EQ(schema["$defs"]["material"]["properties"].size(), std::variant_size_v<Material>);
-  EXPECT_EQ(schema["properties"]["obstacles"]["additionalProperties"]["oneOf"].size(),
-            std::variant_size_v<RigidSurface>);
-}
 
 }  // namespace
 }  // namespace stickslip

@@ -7,18 +7,17 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/studies/temporary_folder.hpp"
+
 namespace stickslip {
 namespace {
 
 using nlohmann::json;
 
-class StudyCell : public testing::Test {
+class StudyCell : public InOwnFolder {
  protected:
-  ~StudyCell() override { std::filesystem::remove_all(folder_); }
-
   /// The study and its cells; a fault of either fails the test.
   std::pair<Study, std::vector<CellInput>> read(const json& scene, json study) {
-    std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / "scene.json") << scene.dump();
     study["scene"] = "scene.json";
     std::ofstream(folder_ / "a.study.json") << study.dump();
@@ -29,9 +28,6 @@ class StudyCell : public testing::Test {
     return {valid.value_or(Study{}), cells};
   }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("stickslip_cell_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
   MeshFiles meshes_;
 };
 

@@ -3,14 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "studies/sweep/cell_inputs.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip::study_texts {
 
@@ -55,11 +54,8 @@ inline constexpr const char* study_text = R"({
 })";
 
 /// A folder with a scene and a study, gone with the test.
-class StudyFolder : public testing::Test {
+class StudyFolder : public InOwnFolder {
  protected:
-  StudyFolder() { std::filesystem::create_directories(folder_); }
-  ~StudyFolder() override { std::filesystem::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
     return (folder_ / name).string();
@@ -74,13 +70,6 @@ class StudyFolder : public testing::Test {
     return study ? expand(*study, "1.0", diagnostics_, mesh_files_) : std::vector<CellInput>{};
   }
 
-  static std::filesystem::path own_folder() {
-    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::replace(name.begin(), name.end(), '/', '_');  // of a case of a parametrised test
-    return std::filesystem::path(testing::TempDir()) / ("stickslip_study_" + name);
-  }
-
-  const std::filesystem::path folder_ = own_folder();
   Diagnostics diagnostics_;
   MeshFiles mesh_files_;
 };

@@ -13,6 +13,7 @@
 #include "studies/run/simulation.hpp"
 #include "studies/run/solution_file.hpp"
 #include "tests/studies/cases.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip::verify_tests {
 namespace {
@@ -330,9 +331,8 @@ TEST(Verify, MatchesNodesOfAnotherProgramByTheirPlaces) {
                         {{"on", "b.end"}, {"move", {{"y", -0.3}}}}}},
                       {"time", {{"end", 1}, {"steps", 1}}},
                       {"method", {{"monolithic_al", json::object()}}}};
-  const fs::path directory = fs::path(testing::TempDir()) / "nodes_of_a_peer";
-  fs::remove_all(directory);
-  fs::create_directories(directory);
+  const TemporaryFolder own_folder;
+  const fs::path& directory = own_folder.path;
   const Simulation simulation{cases::read(scene, folder / "scene.json"), nullptr};
   const Simulation made{simulation.input, std::make_shared<const Problem>(simulation.input.scene)};
   write_result(directory, made, simulate(made));

@@ -1,7 +1,6 @@
 #include "studies/io/vtu.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -12,12 +11,12 @@
 #include <stdexcept>
 
 #include "studies/io/atomic_file.hpp"
+#include "tests/studies/temporary_folder.hpp"
 #include "tests/studies/vtu_reader.hpp"
 
 namespace stickslip {
 namespace {
 
-namespace fs = std::filesystem;
 using vtu::Array;
 using vtu::array_named;
 
@@ -42,21 +41,12 @@ VtuData sample() {
   return data;
 }
 
-class Vtu : public testing::Test {
+class Vtu : public InOwnFolder {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "stickslip_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string written(const VtuData& data) {
     write_file_atomically(folder_ / "fields.vtu", vtu_text(data));
     return read_file(folder_ / "fields.vtu");
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Vtu, DeclaresGridHeadersAndCounts) {
