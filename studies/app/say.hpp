@@ -1,5 +1,5 @@
-/// Text for the terminal, in lines that it has room for. A stream that takes no more says so at the end (main.cpp), when
-/// all files are written; fmt::print throws.
+/// Text for the terminal, in lines that it has room for. A stream that takes no more says so at the end (main.cpp),
+/// when all files are written; fmt::print throws.
 #pragma once
 
 #include <fmt/format.h>

@@ -49,7 +49,7 @@ double estimated_nodes(const MeshDescription& mesh, const std::string& element) 
 
 double estimated_bytes(const ProblemSize& size) {
   // Measured with boxes of Q4: 2.7 kB a displacement at 80 000 of them, of which the factor's entries are 12 bytes
-  // each; these grow by 8 a displacement with each doubling (core/README.md, "Linear algebra").
+  // each; these grow by 8 a displacement with each doubling (docs/decisions.md, "Libraries of linear algebra").
   constexpr double measured_at = 20'600, least_entries = 63, entries_a_doubling = 8, bytes_an_entry = 12;
   const double n = size.displacements;
   const double doublings = std::log2(std::max(n / measured_at, 1.0));

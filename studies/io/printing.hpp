@@ -29,8 +29,8 @@ std::string wrapped(const std::vector<std::string>& pieces, std::string_view bet
 /// The same of each line of a text, broken at single spaces: where columns are apart by more, they stay together.
 std::string wrapped_lines(std::string_view text, std::size_t indent, std::size_t width);
 
-/// The same of each line that is wider, a row of a table too: its columns go on below, under one another as before. What
-/// has no space is broken behind a comma.
+/// The same of each line that is wider, a row of a table too: its columns go on below, under one another as before.
+/// What has no space is broken behind a comma.
 std::string wrapped_rows(std::string_view text, std::size_t indent, std::size_t width);
 
 /// Characters in a line of the terminal that standard output is; no bound where it is none, so files stay as they are.

@@ -70,7 +70,8 @@ nlohmann::json read_description(const std::filesystem::path& directory);
 /// Throws InputFault where study.json or picture.json are there and damaged.
 void check_records(const std::filesystem::path& directory);
 
-/// What sets a cell apart from others of its label: "/contacts/sole/friction = 0.3, level 1"; "" where nothing is varied.
+/// What sets a cell apart from others of its label: "/contacts/sole/friction = 0.3, level 1"; "" where nothing is
+/// varied.
 std::string variant_text(const nlohmann::json& row);
 
 /// Whether a row's status is converged, or converged_at_roundoff.

@@ -7,8 +7,9 @@
 
 namespace stickslip::report {
 
-// Okabe and Ito's palette, which stays apart for all common forms of colour vision; without its yellow, which is lost on
-// white. What cannot include this has copies that a test holds equal: studies/web/page.css, python/stickslip/plots.py.
+// Okabe and Ito's palette, which stays apart for all common forms of colour vision; without its yellow, which is lost
+// on white. What cannot include this has copies that a test holds equal: studies/web/page.css,
+// python/stickslip/plots.py.
 
 constexpr std::pair<const char*, const char*> method_colors[] = {
     {"penalty", "#D55E00"}, {"uzawa_al", "#0072B2"}, {"monolithic_al", "#009E73"}};

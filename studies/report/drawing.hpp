@@ -82,8 +82,8 @@ class Drawing {
 
   std::string inline_svg() const;
   std::string svg_file() const;
-  /// For LaTeX, which sets the texts in the font of the document: as wide as \linewidth, or less than 120 mm with another
-  /// layout, `narrow`, if there is one.
+  /// For LaTeX, which sets the texts in the font of the document: as wide as \linewidth, or less than 120 mm with
+  /// another layout, `narrow`, if there is one.
   std::string pgf(const Drawing* narrow = nullptr) const;
   /// Moves, lines and curves of all shapes.
   std::size_t pieces() const;

@@ -23,8 +23,9 @@ std::string to_csv(const nlohmann::json& rows);
 inline constexpr const char* figure_files[] = {"figures/*.svg", "figures/*.pdf", "figures/*.pgf", "figures/*.csv"};
 
 /// Writes DIR/figures anew: NAME.svg and NAME.pgf (but of a very fine mesh; laid out for one column of a paper and for
-/// two) of each panel with what the report shows at first, NAME.pdf where `pdfs` asks for it, and the figure's rows, of all that can be chosen, as ID.csv. Those of a
-/// former report go, files of others stay (write_outputs). Throws InputFault if rsvg-convert cannot make a PDF.
+/// two) of each panel with what the report shows at first, NAME.pdf where `pdfs` asks for it, and the figure's rows, of
+/// all that can be chosen, as ID.csv. Those of a former report go, files of others stay (write_outputs). Throws
+/// InputFault if rsvg-convert cannot make a PDF.
 void write_figures(const std::filesystem::path& directory, const std::vector<Figure>& figures,
                    const std::vector<Plate>& plates, Pdfs pdfs);
 

@@ -21,8 +21,8 @@ std::string failures(const Study& study);
 /// The run that the picture is of, "Monolithic AL, friction = 0.4"; "" where it is not recorded.
 std::string run_of_picture(const Study& study);
 
-/// What enforcement errors are against, and whether that is one of the runs: "Monolithic AL scale=1, one of the runs"; ""
-/// where there is no such reference.
+/// What enforcement errors are against, and whether that is one of the runs: "Monolithic AL scale=1, one of the runs";
+/// "" where there is no such reference.
 std::string reference_run(const Study& study);
 
 /// What work is in this study: "work (factorisations + 0.11 back-solves)".

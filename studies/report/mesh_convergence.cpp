@@ -28,8 +28,8 @@ bool varies_meshes(const Study& study) {
   return !study.refined && std::any_of(meshes.begin(), meshes.end(), [](auto& of) { return of.second.size() > 1; });
 }
 
-/// Where a cell stands in the series of meshes: its level or, of meshes that are varied, its unknowns, and the mesh, for
-/// two meshes may have as many.
+/// Where a cell stands in the series of meshes: its level or, of meshes that are varied, its unknowns, and the mesh,
+/// for two meshes may have as many.
 struct MeshPlace {
   int level;
   std::string mesh;

@@ -28,8 +28,8 @@ struct StepPicture {
   Drawing drawing;
 };
 
-/// The steps that picture.json has as `frames`, all in one window and at one scale; of many as many as a page holds, the
-/// last among them.
+/// The steps that picture.json has as `frames`, all in one window and at one scale; of many as many as a page holds,
+/// the last among them.
 std::vector<StepPicture> draw_steps(const nlohmann::json& picture);
 
 }  // namespace stickslip::report

@@ -11,7 +11,8 @@ namespace stickslip::report {
 std::filesystem::path play_page();
 
 /// A paragraph with the link from a report in `directory` to `page`, relative to it; its address holds the scene that
-/// `picture` (picture.json) has. Empty without a page or a scene, and if the scene reads meshes, which the page has not.
+/// `picture` (picture.json) has. Empty without a page or a scene, and if the scene reads meshes, which the page has
+/// not.
 std::string play_link(const std::filesystem::path& directory, const nlohmann::json& picture,
                       const std::filesystem::path& page = play_page());
 

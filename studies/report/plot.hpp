@@ -8,12 +8,13 @@
 
 namespace stickslip::report {
 
-/// Widths of a chart in pixels of 1/96 inch, whose texts are 9 points then: two columns of a paper, 169 mm, and one, 85 mm.
+/// Widths of a chart in pixels of 1/96 inch, whose texts are 9 points then: two columns of a paper, 169 mm, and one, 85
+/// mm.
 constexpr double two_columns = 640, one_column = 320;
 
 /// The rows that are chosen at first in one chart of a figure: curves, the values at their ends where these have room,
-/// guides, the line of exact zeros, markers, crosses for failed runs, ticks at round numbers, a legend, and which of the
-/// choices that the page offers is drawn. Nothing where no row can be drawn.
+/// guides, the line of exact zeros, markers, crosses for failed runs, ticks at round numbers, a legend, and which of
+/// the choices that the page offers is drawn. Nothing where no row can be drawn.
 std::optional<Drawing> draw_plot(const Figure& figure, const Chart& chart, double width = two_columns);
 
 /// One axis: values onto pixels, linear or logarithmic (over a decade at least), with some room at both ends, but none

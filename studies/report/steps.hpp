@@ -7,8 +7,8 @@
 
 namespace stickslip::report {
 
-/// HTML: pictures of the bodies with the states of their points, and the tractions of the step that the slider is at; ""
-/// where fewer than two steps were kept.
+/// HTML: pictures of the bodies with the states of their points, and the tractions of the step that the slider is at;
+/// "" where fewer than two steps were kept.
 std::string steps_of_run(const Study& run, Figures& figures);
 
 }  // namespace stickslip::report

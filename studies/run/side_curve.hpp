@@ -1,5 +1,5 @@
-/// Sides and polylines as curves of their own, for searches of what a contact does not look for itself; and where obstacles
-/// are.
+/// Sides and polylines as curves of their own, for searches of what a contact does not look for itself; and where
+/// obstacles are.
 #pragma once
 
 #include <vector>

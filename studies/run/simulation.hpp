@@ -20,8 +20,8 @@ struct Simulation {
   std::vector<int> order;  ///< indices of the parameters, in the order in which the scene names them
 };
 
-/// Simulation::order of a scene as it is written; parameters that it does not name, as they were set, are the last. A node
-/// of a shape NAME is NAME/0, NAME/1, ...
+/// Simulation::order of a scene as it is written; parameters that it does not name, as they were set, are the last. A
+/// node of a shape NAME is NAME/0, NAME/1, ...
 std::vector<int> order_of(const std::vector<Parameter>& parameters, const JsonDocument& scene);
 
 /// Reads a scene and makes its problem. None if there is a fault; the diagnostics then have all faults. `overrides`:

@@ -48,8 +48,8 @@ Warning turned_warning(const Problem& problem, int c, const std::string& words, 
 }  // namespace
 
 std::optional<Warning> turned_surface(const Problem& problem, int c) {
-  constexpr double alike_from =
-      0.5;                          // cosine of the two normals: a side that is steeper may come to touch with its end
+  // Cosine of the two normals: a side that is steeper may come to touch with its end.
+  constexpr double alike_from = 0.5;
   constexpr double against = 1e-9;  // cosine: less is a side along the obstacle's normal, to rounding
   const Model& model = problem.model;
   const auto& slots = problem.slots;

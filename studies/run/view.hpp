@@ -25,8 +25,8 @@ struct Piece {
   std::vector<int> nodes;
 };
 
-/// All elements; of solid bodies those faces of their boundary that are turned to the one who looks, the farthest first,
-/// where a state has moved them to.
+/// All elements; of solid bodies those faces of their boundary that are turned to the one who looks, the farthest
+/// first, where a state has moved them to.
 std::vector<Piece> pieces_of(const Problem& problem, const State<double>& state, const std::optional<View>& view);
 
 }  // namespace stickslip

@@ -31,8 +31,8 @@ struct CellInput {
 std::string variant_key(const CellInput& cell);
 
 /// The cells, all valid: scene by scene, in it mesh level by level, then each combination of `vary`, then the methods
-/// with each combination of their options, the last varying fastest. Inputs that are the same come once, and a note says
-/// how many were left out. Empty where there is a fault.
+/// with each combination of their options, the last varying fastest. Inputs that are the same come once, and a note
+/// says how many were left out. Empty where there is a fault.
 std::vector<CellInput> expand(const Study&, const std::string& program_version, Diagnostics&, MeshFiles&);
 
 /// Reports what else is at fault where the study, or the file of its scene, is already, and so has no cells: values of
@@ -49,8 +49,8 @@ CellInput reference_cell(const CellInput&, const Reference&, const std::string& 
 /// 16 hexadecimal digits that name the result of this input by this version of the program.
 std::string cell_id(const std::string& canonical, const std::string& program_version);
 
-/// Makes the scene's meshes finer: twice as many cells each way a level, of generators; of an imported mesh as many more
-/// splits. A level below zero takes back what as many above have made.
+/// Makes the scene's meshes finer: twice as many cells each way a level, of generators; of an imported mesh as many
+/// more splits. A level below zero takes back what as many above have made.
 void refine_meshes(JsonDocument& scene, int level, const Place& origin);
 
 }  // namespace stickslip

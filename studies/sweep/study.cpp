@@ -15,8 +15,8 @@ using nlohmann::json;
 double relative(double difference, double scale) { return difference == 0 ? 0 : difference / scale; }
 
 /// The size of a parameter: its absolute value. If that is zero, as of a shape: the least change that would change a
-/// response or an objective by its own size, or by that of its kind in the run if that is larger. (A response may vanish
-/// by symmetry; it would make the parameter as small as rounding.)
+/// response or an objective by its own size, or by that of its kind in the run if that is larger. (A response may
+/// vanish by symmetry; it would make the parameter as small as rounding.)
 class ParameterSize {
  public:
   explicit ParameterSize(const Parameter& parameter) : value_(std::abs(parameter.value)) {}

@@ -15,10 +15,10 @@ namespace stickslip {
 using Errors = std::map<std::string, double>;
 
 /// Against a case on the same mesh: what enforcing the constraint this way costs in accuracy. Response: largest
-/// difference over the steps / largest reference value; sensitivity: the same, the scale at least response / size of the
-/// parameter (its value or, if that is zero, the least change that would change a response by its own size, or by
-/// scale_of() if that is larger); field: relative L2 difference of the tractions of the last step, area weighted.
-/// Empty where the steps differ (one of the two stopped early).
+/// difference over the steps / largest reference value; sensitivity: the same, the scale at least response / size of
+/// the parameter (its value or, if that is zero, the least change that would change a response by its own size, or by
+/// scale_of() if that is larger); field: relative L2 difference of the tractions of the last step, area weighted. Empty
+/// where the steps differ (one of the two stopped early).
 Errors enforcement_errors(const CaseResult& result, const CaseResult& reference);
 
 /// Against closed forms or given values, at the last step: what the mesh and the steps cost.

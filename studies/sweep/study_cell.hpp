@@ -18,8 +18,8 @@ namespace stickslip {
 /// What a cell's id says of the program: a build of another commit does not take its results for its own.
 std::string program_version();
 
-/// The parts of a row that say where its cell stands in the study. The id does not know them: another study may have the
-/// same cell elsewhere.
+/// The parts of a row that say where its cell stands in the study. The id does not know them: another study may have
+/// the same cell elsewhere.
 nlohmann::json place_of(const CellInput& cell);
 
 /// 16 digits over what the errors of a study are against, and which are recorded: of these the id does not know either.

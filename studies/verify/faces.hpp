@@ -139,8 +139,8 @@ class Faces {
     return near;
   }
 
-  /// Whether x is past an edge at which the faces that oppose a side end: at finite strain by more than a hundredth of a
-  /// face.
+  /// Whether x is past an edge at which the faces that oppose a side end: at finite strain by more than a hundredth of
+  /// a face.
   bool is_past_border(const Near& here, const Vec3& x, const Vec3& outward) const {
     const auto& [p, s, t] = here.place;
     const Eigen::VectorXd off = from_edges(patches_[p].sides(), s, t);

@@ -3,7 +3,9 @@
 /// master: of an obstacle the one that moves with it. At small strain what is faced, n and weights are of the start.
 ///
 ///   y(xi) = sum N_i(xi) y_i,   (x - y) . y' = 0,   n across y',   g = n . (x - y)      on facets and smooth patches
-///   g = n . (x - p);   g = +- (|x - c| - r)                                            on a plane; a circle or sphere; a cylinder from its axis
+///   g = n . (x - p)                                                                    on a plane
+///   g = +- (|x - c| - r)                                                               on a circle or sphere; c on the
+///                                                                                      axis of a cylinder
 #pragma once
 
 #include "studies/verify/scene.hpp"

@@ -157,7 +157,8 @@ EMSCRIPTEN_KEEPALIVE int stickslip_scene(const char* request) {
 
 /// Result out, of the last stickslip_scene(). Valid until the next call. Its keys:
 /// - "faults": [{"line", "column", "pointer", "message", "text"}], and "notes", the same;
-/// - if the scene has no fault, "size": {"displacements", "contact_points", "steps", "bytes", "extent"}, and "document":
+/// - if the scene has no fault, "size": {"displacements", "contact_points", "steps", "bytes", "extent"}, and
+/// "document":
 ///   the scene as it was run;
 /// - if it was solved, "result": result.json, "scales": scales_json() of it, and "picture": picture.json, with the
 ///   `traction` vectors of its contact points.

@@ -5,9 +5,11 @@
 
 #include "methods/newton/regularisation.hpp"
 #include "methods/rescue/solutions.hpp"
+#include "methods/rescue/work_bound.hpp"
 #include "tests/support/blocks.hpp"
 #include "tests/support/every_branch.hpp"
 #include "tests/support/random_contacts.hpp"
+#include "tests/support/sliding_scenes.hpp"
 
 namespace stickslip::motion_test {
 namespace {
@@ -360,6 +362,40 @@ TEST(Penalty, NamesAnOverlapThatGrowsAForceWithTheStiffness) {
     method.stiffness = relative(stiffness);
     EXPECT_TRUE(is_converged(solve_moving(groove, method).trajectory.status)) << stiffness;
   }
+}
+
+/// Iterations in vain after which a bound is spent.
+long iterations_allowed(const Model& model, Bodies bodies) {
+  Counters counters;
+  WorkBound bound(model, counters, 100, 0, bodies);
+  bound.begin();
+  while (!bound.is_spent()) ++counters.newton;
+  return counters.newton;
+}
+
+/// The motion is the regular way of bodies that nothing but contact holds, and takes more than a step does else.
+TEST(WorkBound, IsTwiceAsHighIfABodyIsFree) {
+  const Model model = make_model(scenes::sliding_die());
+  const long held = iterations_allowed(model, Bodies::held);
+  EXPECT_GT(held, 0);
+  EXPECT_EQ(iterations_allowed(model, Bodies::free), 2 * held);
+}
+
+TEST(WorkBound, CountsNothingOfAttemptsThatConvergeAsTheyShould) {
+  const Model model = make_model(scenes::sliding_die());
+  Counters counters;
+  WorkBound bound(model, counters, 100, 0, Bodies::held);
+  const long held = iterations_allowed(model, Bodies::held);
+  for (int attempt = 0; attempt < held; ++attempt) {
+    bound.begin();
+    counters.newton += 20;
+    bound.end(1);
+    ASSERT_FALSE(bound.is_spent()) << attempt;
+  }
+  bound.begin();
+  counters.newton += held;
+  bound.end(0);
+  EXPECT_TRUE(bound.is_spent());
 }
 
 }  // namespace
