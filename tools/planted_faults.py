@@ -194,7 +194,7 @@ FAULTS = [
     ("motion without its springs", "methods/newton/residuals.hpp",
      "forces += <<<task_.anchor.force(compact, model.dimension)>>>;", "Vector<T>::Constant(forces.size(), T(0)).eval()"),
     ("any of several solutions", "methods/rescue/motion.hpp", "may_rest && (<<<!several_>>> || (near", "true"),
-    ("a bound that knows no free body", "methods/rescue/work_bound.hpp", "if (<<<bodies == Bodies::free>>>) most_ *= 2;",
+    ("a bound that knows no free body", "methods/rescue/work_bound.hpp", "(<<<bodies == Bodies::free>>> ? few_of_motion",
      "false"),
     ("floating bodies moved alone", "methods/rescue/rescue.hpp", "false, <<<run_.free.movable>>>, bound_)",
      "run_.free.floating"),

@@ -23,14 +23,14 @@ enum class Bodies { held, free };
 class WorkBound {
  public:
   /// `counters`: of the run; must outlive it. `spent`: iterations of the run's increments so far, those in vain apart.
-  /// If a body is free, the motion is the regular way and not a rescue: then the bound is twice as high.
+  /// If a body is free, the motion is the regular way and not a rescue: then the least bound is higher.
   WorkBound(const Model& model, const Counters& counters, int max_iterations, long spent, Bodies bodies)
       : counters_(counters), each_(max_iterations) {
     const bool linear = model.effects.linear_bulk && !model.effects.current_geometry;
     const long size = model.dof_count() + dofs_a_point * static_cast<long>(model.points.size());
     const long each = std::max(each_, least_each), affordable = dofs_in_vain / std::max(size, 1L);
-    most_ = std::clamp(std::max(spent_again * spent, affordable), few_in_vain * each, equilibria_in_vain * each);
-    if (bodies == Bodies::free) most_ *= 2;
+    const long least = (bodies == Bodies::free ? few_of_motion : few_in_vain) * each;
+    most_ = std::clamp(std::max(spent_again * spent, affordable), least, equilibria_in_vain * each);
     if (linear) most_ = std::numeric_limits<long>::max();
   }
 
@@ -55,8 +55,9 @@ class WorkBound {
   }
 
  private:
-  // Bounds in units of max_iterations: the most, and the least. Steps that succeeded took up to 20.
-  static constexpr long equilibria_in_vain = 50, few_in_vain = 4;
+  // Bounds in units of max_iterations: the most, and the least. Steps that succeeded took up to 20; those that began
+  // with disks that only contact holds, up to 8 and more by Uzawa.
+  static constexpr long equilibria_in_vain = 50, few_in_vain = 4, few_of_motion = 12;
   static constexpr long dofs_in_vain = 2'000'000;  // iterations times displacements: 3 to 10 s at 3000
   static constexpr long dofs_a_point = 10;         // a contact point takes as long as these
   static constexpr long spent_again = 5;           // where the run was dear so far, it may be so on
