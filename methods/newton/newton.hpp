@@ -11,6 +11,7 @@
 ///   methods/newton/newton_tangent.hpp    what is factorised, and what a singular tangent is taken for
 ///   methods/newton/line_search.hpp       how far a step is gone along
 ///   methods/newton/predictor.hpp         where it begins, of bodies that are not linear
+///   methods/newton/kept_patches.hpp      points that go to and fro at a corner
 ///
 /// What is tried where it cycles: methods/rescue/rescue.hpp. [AC91], [HSW08]; theory: core/README.md.
 #pragma once
@@ -137,7 +138,7 @@ class NewtonIterations {
 
   bool is_kept_wrong() { return evaluate_.patches().is_wrong(task_.contact, engine_.compact(unknowns_.u), at_.field); }
 
-  /// Whether points that slide along curves give another way on from an end (methods/rescue/kept_patches.hpp): from a
+  /// Whether points that slide along curves give another way on from an end (methods/newton/kept_patches.hpp): from a
   /// cycle, points kept on their patches; once, from a wrong solution of that, points let go.
   bool goes_on(NewtonEnd& end) {
     const bool wrong = is_converged(end.status) && is_kept_wrong();

@@ -10,7 +10,7 @@
 #include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
 #include "methods/newton/equilibrium.hpp"
-#include "methods/rescue/kept_patches.hpp"
+#include "methods/newton/kept_patches.hpp"
 
 namespace stickslip {
 

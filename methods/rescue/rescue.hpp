@@ -17,7 +17,7 @@
 ///
 /// The levels below and above an increment:
 ///
-///   corner       points that go to and fro between two patches are kept on one (methods/rescue/kept_patches.hpp)
+///   corner       points that go to and fro between two patches are kept on one (methods/newton/kept_patches.hpp)
 ///   equilibrium  Newton's method, the sequence, Newton's method with all its iterations (find_equilibrium)
 ///   step         parts, down to 1/1024 (methods/stepping/step.hpp). What all of them spend in vain is bounded
 ///                (methods/rescue/work_bound.hpp)
@@ -61,7 +61,7 @@ class IncrementSearch {
 
   Increment<T> find() {
     if (auto rest = rest_of_floating_bodies()) return std::move(*rest);
-    found_ = solve_increment(run_, previous_, factor_, time_, {.state = previous_, .anchor = {}});
+    found_ = solve_increment(run_, previous_, factor_, time_, {.state = previous_});
     if (prevents_what_crosses()) return failed(Status::infeasible, "");
     if (!rescues_ || is_final()) return std::move(found_);
     if (!solved() && !balances()) return failed(Status::no_equilibrium, found_.message);
@@ -123,7 +123,7 @@ class IncrementSearch {
     const State<T>& target = all.states[*all.resting];
     if (solved() && same_solution(run_.model, found_.state, target, all.reach)) return found_;
     const RunScales after = std::exchange(run_.account.scales, before_);
-    auto taken = solve_increment(run_, previous_, factor_, time_, {.state = target, .anchor = {}});
+    auto taken = solve_increment(run_, previous_, factor_, time_, {.state = target});
     if (!taken.usable() || !same_solution(run_.model, taken.state, target, all.reach)) {
       run_.account.scales = after;
       return std::nullopt;

@@ -55,8 +55,8 @@ class WorkBound {
   }
 
  private:
-  // Bounds in units of max_iterations: the most, and the least. Steps that succeeded took up to 20; those that began
-  // with disks that only contact holds, up to 8 and more by Uzawa.
+  // Bounds in units of max_iterations: the most, and the least. Steps that succeeded took up to 20. Those of disks
+  // between plates, which only contact holds, took up to 11.
   static constexpr long equilibria_in_vain = 50, few_in_vain = 4, few_of_motion = 12;
   static constexpr long dofs_in_vain = 2'000'000;  // iterations times displacements: 3 to 10 s at 3000
   static constexpr long dofs_a_point = 10;         // a contact point takes as long as these

@@ -87,8 +87,7 @@ class Path {
   bool repeat(double time, const std::vector<Vector<double>>& guide) {
     State<T> start = trajectory_.last();
     if (!guide.empty()) start.displacement = guide[trajectory_.increments.size()].template cast<T>();
-    auto increment =
-        solve_increment(run_, trajectory_.last(), trajectory_.last_factor(), time, {.state = start, .anchor = {}});
+    auto increment = solve_increment(run_, trajectory_.last(), trajectory_.last_factor(), time, {.state = start});
     increment.time = time;
     const bool usable = increment.usable();
     take(std::move(increment));
@@ -125,13 +124,12 @@ class Path {
     }
     const Vector<double> left = values(previous.displacement);
     const Arc arc{left, now, share_ * length_, share_ * span_, nodes_, before == nullptr};
-    auto increment =
-        solve_increment(run_, previous, trajectory_.last_factor(), guess, {.state = start, .anchor = {}, .arc = &arc});
+    auto increment = solve_increment(run_, previous, trajectory_.last_factor(), guess, {.state = start, .arc = &arc});
     if (!increment.usable() || increment.time < end_ * (1 - nearly) || now >= end_) return increment;
     const double part = (end_ - now) / (increment.time - now);
     start = increment.state;
     start.displacement = previous.displacement + T(part) * (increment.state.displacement - previous.displacement);
-    auto landed = solve_increment(run_, previous, trajectory_.last_factor(), end_, {.state = start, .anchor = {}});
+    auto landed = solve_increment(run_, previous, trajectory_.last_factor(), end_, {.state = start});
     landed.time = end_;
     landed.newton += increment.newton;
     landed.augmentations += increment.augmentations;

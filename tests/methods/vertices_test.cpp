@@ -1,4 +1,4 @@
-/// Points that go to and fro between two facets, and are kept on one (methods/rescue/kept_patches.hpp).
+/// Points that go to and fro between two facets, and are kept on one (methods/newton/kept_patches.hpp).
 #include <gtest/gtest.h>
 
 #include "core/engine/engine.hpp"
