@@ -4,8 +4,7 @@
 ///   repeat  solve  R(u) = f_int - f_ext + sum A t dg = 0,   t = P_mu(lambda + rho g)     (lambda fixed)
 ///           lambda <- t                                                                  (AugmentationLoop::update)
 ///
-///   rho           scale, force per length cubed. With `adapt`, rho of a point grows where its violation falls slowly
-///                 (augmentation/adaption.hpp)
+///   rho           scale, force per length cubed. With `adapt` it grows (augmentation/adaption.hpp)
 ///   acceleration  lambda <- an extrapolation of the last t, put back onto the cone (augmentation/acceleration.hpp)
 ///   cone          augmented: radius -mu z_N; the tangent of slip is unsymmetric
 ///                 frozen: radius -mu lambda_N of the last augmentation; the tangent is symmetric. The radius is then a
@@ -122,11 +121,12 @@ class AugmentationLoop {
     resumed_ = {};
     const auto cones = [&](Vector<T> x) { return projected_multiplier(run_.model, run_.slots, std::move(x)); };
     const Vector<T>& traction = equilibrium.field.traction;
-    const Vector<T> next = raised || status_.done
+    unknowns_.u = equilibrium.unknowns.u;
+    unknowns_.time = equilibrium.unknowns.time;
+    unknowns_.multiplier = raised || status_.done
                                ? traction
                                : accelerator_.next(unknowns_.multiplier, traction, progress_.has_same_states(),
                                                    progress_.contraction(), cones);
-    unknowns_ = {equilibrium.unknowns.u, next, equilibrium.unknowns.time};
   }
 
   const UzawaAL& method_;

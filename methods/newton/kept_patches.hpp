@@ -68,7 +68,6 @@ class KeptPatches {
 
   /// Whether a closed point is kept on a patch that it does not face. `compact`: displacements of the contact nodes.
   bool is_wrong(const ContactInput<T>& input, const Vector<T>& compact, const ContactField<T>& field) const {
-    if (kept_.empty()) return false;
     const auto free = detail::facings(input, compact);
     for (std::size_t p = 0; p < kept_.size(); ++p)
       if (kept_[p] != Patch::none && field.state[p] != ContactState::open && free[p].patch != kept_[p]) return true;

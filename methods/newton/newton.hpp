@@ -136,7 +136,10 @@ class NewtonIterations {
   }
   bool is_linear() const { return task_.contact.model.effects.linear_bulk; }
 
-  bool is_kept_wrong() { return evaluate_.patches().is_wrong(task_.contact, engine_.compact(unknowns_.u), at_.field); }
+  bool is_kept_wrong() {
+    const auto& patches = evaluate_.patches();
+    return !patches.kept().empty() && patches.is_wrong(task_.contact, engine_.compact(unknowns_.u), at_.field);
+  }
 
   /// Whether points that slide along curves give another way on from an end (methods/newton/kept_patches.hpp): from a
   /// cycle, points kept on their patches; once, from a wrong solution of that, points let go.

@@ -129,7 +129,8 @@ class StepInParts {
     next_ = is_last ? target_ : reached_ + length_;
     run_.start = reached_;
     bound_.begin();
-    auto part = find_increment(run_, trajectory_.last(), trajectory_.last_factor(), next_, bound_, may_move);
+    factor_ = trajectory_.last_factor();
+    auto part = find_increment(run_, trajectory_.last(), factor_, next_, bound_, may_move);
     bound_.end(part.usable() ? equilibria_of(part) : 0);
     part.time = next_;
     part.requested = is_last;
@@ -158,7 +159,7 @@ class StepInParts {
 
   void take(Increment<T> part) {
     constexpr double regrowth = 1.5;
-    look_beside(run_, trajectory_, trajectory_.last_factor(), reached_, part);
+    look_beside(run_, trajectory_, factor_, reached_, part);
     trajectory_.increments.push_back(std::move(part));
     reached_ = next_;
     if (++easy_ >= 3) length_ *= regrowth;
@@ -186,7 +187,8 @@ class StepInParts {
   double reached_, next_ = 0, length_;  ///< begin and end of the present part, length of the next
   int easy_ = 0, cutbacks_ = 0;         ///< parts in a row that succeeded; halvings
   bool buckles_ = false;                ///< whether a part was refused for the critical loads that it passed
-  RunScales scales_;                    ///< where the present part begins
+  RunScales scales_;                    ///< where the present part begins, as is the adaption of rho:
+  std::vector<double> factor_;
   std::optional<Increment<T>> failed_;  ///< the first part that failed
   WorkBound bound_;
 };
