@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <type_traits>
 #include <vector>
 
@@ -14,9 +15,11 @@
 #include "core/model/history.hpp"
 #include "core/model/model.hpp"
 #include "core/solids/edges.hpp"
-#include "core/solids/materials.hpp"
 
 namespace stickslip {
+
+template <class T>
+struct BodyLaws;  // core/solids/materials.hpp, which only what computes with laws includes
 
 /// Nodal forces of a load at history = 1, on the dofs on which it acts.
 template <class T>
@@ -41,8 +44,9 @@ struct NodalLoad {
 template <class T>
 struct Slots {
   Numbers<T> numbers;
-  Points<T> points;                        ///< D x nodes
-  std::vector<Law<T>> laws;                ///< per body
+  Points<T> points;  ///< D x nodes
+  std::shared_ptr<const BodyLaws<T>> laws;
+  std::vector<T> areas;                    ///< per body: cross-section of bars
   std::vector<Depth<T>> depths;            ///< per body
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
@@ -70,13 +74,6 @@ namespace detail {
 template <class T>
 Vec<T, 2> point2(const Points<T>& points, int node) {
   return {points(0, node), points(1, node)};
-}
-
-/// Cross-section of bars, area.
-template <class T>
-T area_of(const Law<T>& bars) {
-  if (const auto* plastic = std::get_if<PlasticBarLaw<T>>(&bars)) return plastic->elastic.area;
-  return std::get<BarLaw<T>>(bars).area;
 }
 
 }  // namespace detail

@@ -7,6 +7,7 @@
 #include "core/model/element_nodes.hpp"
 #include "core/model/load_vector_impl.hpp"
 #include "core/model/slots.hpp"
+#include "core/solids/materials.hpp"
 
 namespace stickslip {
 
@@ -176,13 +177,16 @@ Slots<T> make_body_slots(const Model& model, const Numbers<T>& numbers, Points<T
   Slots<T> slots;
   slots.numbers = numbers;
   slots.points = std::move(points);
+  const auto laws = std::make_shared<BodyLaws<T>>();
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& body = model.bodies[b];
-    slots.laws.push_back(detail::make_law(model.scene, model.scene.bodies[b], body.mesh, numbers));
+    laws->of.push_back(detail::make_law(model.scene, model.scene.bodies[b], body.mesh, numbers));
+    slots.areas.push_back(numbers(model.scene.bodies[b].area));
     const bool plane = is_continuum(body.mesh.shape) && model.scene.space != Space::axisymmetric;
     slots.depths.push_back(
         {model.scene.space == Space::axisymmetric, plane ? numbers(model.scene.bodies[b].thickness) : T(1)});
   }
+  slots.laws = laws;
   return slots;
 }
 

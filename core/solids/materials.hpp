@@ -1,7 +1,6 @@
-/// The list of materials: what a scene may name, and the law that each becomes in a scalar T.
+/// The list of laws: what each material that a scene may name (core/solids/descriptions.hpp) becomes in a scalar T.
 ///
-/// A material has a file of its own: its description for the scene, which says its keys (core/algebra/described.hpp)
-/// and what it is for, a verb first (place), and what makes a law of it,
+/// The law of a material has a file of its own, with what makes a law of a description,
 ///
 ///   law_of(material, space, finite_strain, numbers)   where it fills a continuum
 ///   bar_of(material, elastic, numbers)                where it fills bars too: elastic is the law of bars of its E
@@ -29,10 +28,14 @@
 
 namespace stickslip {
 
-using Material = std::variant<LinearElastic, NeoHookean, J2Plastic, GroundedSpring>;
-
 template <class T>
 using Law = std::variant<LinearElasticLaw<T>, NeoHookeanLaw<T>, J2Law<T>, BarLaw<T>, PlasticBarLaw<T>, SpringLaw<T>>;
+
+/// Of all bodies of a scene.
+template <class T>
+struct BodyLaws {
+  std::vector<Law<T>> of;
+};
 
 /// Numbers that a law remembers at a point.
 template <class L>
@@ -116,78 +119,5 @@ template <FillsContinuum M>
 using LawOf = decltype(law_of<double>(std::declval<const M&>(), Space::plane_strain, false, Numbers<double>{}));
 template <FillsBars M>
 using BarLawOf = decltype(bar_of<double>(std::declval<const M&>(), BarLaw<double>{}, Numbers<double>{}));
-
-namespace detail {
-
-template <class M>
-constexpr bool is_whole() {
-  static_assert(FillsContinuum<M> || HoldsPoint<M>, "a material lacks its law_of");
-  if constexpr (FillsContinuum<M>) {
-    static_assert(ContinuumLaw<LawOf<M>>, "the law of a material lacks something");
-    static_assert(std::is_constructible_v<Law<double>, LawOf<M>>, "the law of a material is not in the list of laws");
-  }
-  if constexpr (FillsBars<M>) {
-    static_assert(TwoNodeLaw<BarLawOf<M>>, "the law of bars of a material lacks something");
-    static_assert(std::is_constructible_v<Law<double>, BarLawOf<M>>, "a law of bars is not in the list of laws");
-  }
-  return true;
-}
-template <class... M>
-constexpr bool are_whole_materials(const std::variant<M...>*) {
-  return (is_whole<M>() && ...);
-}
-static_assert(are_whole_materials(static_cast<const Material*>(nullptr)));
-
-}  // namespace detail
-
-/// Why a material does not go with elements of a continuum, completing "MATERIAL ..."; empty where it does.
-inline const char* fault_of(const Material& material, Kinematics kinematics, bool finite_strain) {
-  return std::visit(
-      [&]<class M>(const M&) -> const char* {
-        if constexpr (FillsContinuum<M>) {
-          using L = LawOf<M>;
-          if (L::is_made_for(kinematics, finite_strain)) return "";
-          if (!L::is_made_for(kinematics, !finite_strain)) return "is not made for this space and element";
-          return finite_strain ? "is made for small strain" : "is made for finite strain";
-        }
-        return "holds a point";
-      },
-      material);
-}
-
-/// Numbers that a point of a continuum of a material remembers, and a bar of it.
-inline int memory_of(const Material& material, TensorLayout layout) {
-  return std::visit(
-      [&]<class M>(const M&) {
-        if constexpr (FillsContinuum<M>)
-          if constexpr (Remembers<LawOf<M>>) return LawOf<M>::memory_in(layout);
-        return 0;
-      },
-      material);
-}
-inline int memory_of_bar(const Material& material) {
-  return std::visit(
-      []<class M>(const M&) {
-        if constexpr (FillsBars<M>) return memory_of<BarLawOf<M>>();
-        return 0;
-      },
-      material);
-}
-
-/// Whether bodies of a material remember how they flowed.
-inline bool flows(const Material& material) { return memory_of(material, TensorLayout::plane4) > 0; }
-
-/// Whether a continuum of a material hardly changes its volume.
-inline bool is_nearly_incompressible(const Material& material) {
-  constexpr double nearly = 0.45;
-  return std::visit(
-      []<class M>(const M& of) {
-        if constexpr (requires { of.nu; }) return of.nu.value > nearly;
-        return false;
-      },
-      material);
-}
-
-static_assert(TwoNodeLaw<SpringLaw<double>>);
 
 }  // namespace stickslip

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "core/solids/materials.hpp"
 #include "studies/input/described.hpp"
 
 namespace stickslip {

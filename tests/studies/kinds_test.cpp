@@ -2,6 +2,7 @@
 /// schema.
 #include <gtest/gtest.h>
 
+#include "core/solids/materials.hpp"
 #include "studies/input/materials.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "tests/support/largest.hpp"
