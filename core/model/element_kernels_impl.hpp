@@ -161,7 +161,7 @@ struct ContinuumKernels {
   static void stretch_edge(const Elements& elements, const ElementEdge& edge, const Vector<T>& u,
                            std::vector<ThicknessStretch<T>>& stretches) {
     const auto of_element = [&]<Kinematics kinematics, class L>(const L& law) {
-      if constexpr (kinematics == Kinematics::plane && L::is_made_for(kinematics, true) && !Remembers<L>) {
+      if constexpr (kinematics == Kinematics::plane && L::is_made_for(kinematics, Strains::finite) && !Remembers<L>) {
         const auto nodes = nodes_of(elements.body(), edge.element);
         const auto X = detail::gather_coordinates<T, Shape>(elements.slots.points, nodes.data());
         const auto local = detail::gather_displacements<T, Shape>(u, nodes.data());

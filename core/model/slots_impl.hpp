@@ -159,7 +159,7 @@ Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Nu
               const BarLaw<T> bar{numbers(material.E) * numbers(body.area), numbers(body.area), scene.finite_strain};
               return bar_of<T>(material, bar, numbers);
             }
-          return law_of<T>(material, scene.space, scene.finite_strain, numbers);
+          return law_of<T>(material, scene.space, strains_of(scene.finite_strain), numbers);
         }
       },
       body.material);

@@ -14,7 +14,7 @@ void with_continuum(const BodyMesh& body, const Law<T>& law, F&& f) {
   const auto with = [&]<class L>(const L& of) {
     if constexpr (requires { L::is_finite; })
       with_kinematics<Shape>(body.kinematics, [&]<Kinematics kinematics>() {
-        if constexpr (L::is_made_for(kinematics, false) || L::is_made_for(kinematics, true))
+        if constexpr (L::is_made_for(kinematics, Strains::small) || L::is_made_for(kinematics, Strains::finite))
           f.template operator()<kinematics>(of);
       });
   };

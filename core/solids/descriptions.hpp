@@ -1,8 +1,8 @@
 /// The list of materials, as a scene describes them, and what is known of one without its law.
 ///
-/// A description has its numbers, its keys (core/algebra/described.hpp), and what it is for, a verb first (place). The law
-/// that it becomes has a file of its own, and its name is in core/solids/materials.hpp, which says what a law gives. What
-/// only holds scenes need not parse laws.
+/// A description has its numbers, its keys (core/algebra/described.hpp), and what it is for, a verb first (place). The
+/// law that it becomes has a file of its own, and its name is in core/solids/materials.hpp, which says what a law gives.
+/// What only holds scenes need not parse laws.
 #pragma once
 
 #include <array>
@@ -60,7 +60,7 @@ struct GroundedSpring {
 using Material = std::variant<LinearElastic, NeoHookean, J2Plastic, GroundedSpring>;
 
 /// Why a material does not go with elements of a continuum, completing "MATERIAL ..."; empty where it does.
-const char* fault_of(const Material& material, Kinematics kinematics, bool finite_strain);
+const char* fault_of(const Material& material, Kinematics kinematics, Strains strains);
 
 /// Numbers that a point of a continuum of a material remembers, and a bar of it.
 int memory_of(const Material& material, TensorLayout layout);

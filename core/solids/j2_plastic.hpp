@@ -47,7 +47,7 @@ template <class T>
 struct J2Law {
   static constexpr int memory_in(TensorLayout layout) { return layout == TensorLayout::full9 ? 7 : 4; }
   static constexpr int memory = memory_in(TensorLayout::plane4);  ///< a point of a plane element
-  static constexpr bool is_made_for(Kinematics, bool /*finite_strain*/) { return true; }
+  static constexpr bool is_made_for(Kinematics, Strains) { return true; }
   template <class U, TensorLayout layout>
   using Memory = std::type_identity_t<Vec<U, memory_in(layout)>>;
 
@@ -329,10 +329,10 @@ struct J2Law {
 };
 
 template <class T>
-J2Law<T> law_of(const J2Plastic& material, Space space, bool finite_strain, const Numbers<T>& numbers) {
+J2Law<T> law_of(const J2Plastic& material, Space space, Strains strains, const Numbers<T>& numbers) {
   const LinearElasticLaw<T> elastic(numbers(material.E), numbers(material.nu), Space::plane_strain);
   return {elastic.lame, elastic.shear, hardening_of(material.yield, material.hardening, material.table, numbers), space,
-          finite_strain};
+          strains == Strains::finite};
 }
 
 }  // namespace stickslip

@@ -23,7 +23,7 @@ T lame_of_plane_stress(const T& lame, const T& shear) {
 template <class T>
 struct LinearElasticLaw {
   static constexpr bool is_finite = false;
-  static constexpr bool is_made_for(Kinematics, bool finite_strain) { return !finite_strain; }
+  static constexpr bool is_made_for(Kinematics, Strains strains) { return strains == Strains::small; }
 
   T lame, shear;
   Space space = Space::plane_strain;
@@ -74,8 +74,7 @@ struct LinearElasticLaw {
 };
 
 template <class T>
-LinearElasticLaw<T> law_of(const LinearElastic& material, Space space, bool /*finite_strain*/,
-                           const Numbers<T>& numbers) {
+LinearElasticLaw<T> law_of(const LinearElastic& material, Space space, Strains /*strains*/, const Numbers<T>& numbers) {
   return {numbers(material.E), numbers(material.nu), space};
 }
 

@@ -26,14 +26,15 @@ static_assert(TwoNodeLaw<SpringLaw<double>>);
 
 }  // namespace
 
-const char* fault_of(const Material& material, Kinematics kinematics, bool finite_strain) {
+const char* fault_of(const Material& material, Kinematics kinematics, Strains strains) {
+  const bool finite = strains == Strains::finite;
   return std::visit(
       [&]<class M>(const M&) -> const char* {
         if constexpr (FillsContinuum<M>) {
           using L = LawOf<M>;
-          if (L::is_made_for(kinematics, finite_strain)) return "";
-          if (!L::is_made_for(kinematics, !finite_strain)) return "is not made for this space and element";
-          return finite_strain ? "is made for small strain" : "is made for finite strain";
+          if (L::is_made_for(kinematics, strains)) return "";
+          if (!L::is_made_for(kinematics, strains_of(!finite))) return "is not made for this space and element";
+          return finite ? "is made for small strain" : "is made for finite strain";
         }
         return "holds a point";
       },

@@ -2,7 +2,7 @@
 ///
 /// The law of a material has a file of its own, with what makes a law of a description,
 ///
-///   law_of(material, space, finite_strain, numbers)   where it fills a continuum
+///   law_of(material, space, strains, numbers)         where it fills a continuum
 ///   bar_of(material, elastic, numbers)                where it fills bars too: elastic is the law of bars of its E
 ///   law_of(material, numbers)                         where it holds a point
 ///
@@ -53,7 +53,7 @@ namespace detail {
 template <class L, class... Memory>
 concept ContinuumLawWith = requires(const L& law, const PlaneGradient<double>& H, const Memory&... memory) {
   { law.is_finite } -> std::convertible_to<bool>;
-  { L::is_made_for(Kinematics::plane, true) } -> std::same_as<bool>;
+  { L::is_made_for(Kinematics::plane, Strains::finite) } -> std::same_as<bool>;
   { law.with(law.numbers()) } -> std::same_as<L>;
   { law.stress(H, memory...) } -> std::same_as<PlaneGradient<double>>;
   { law.stretch_across(H, memory...) } -> std::same_as<double>;
@@ -94,7 +94,7 @@ concept TwoNodesFlow = requires(const L& law, const Mat<double, 2>& X, const Vec
 
 template <class L>
 concept ContinuumLaw = (!Remembers<L> && detail::ContinuumLawWith<L> &&
-                        (!L::is_made_for(Kinematics::plane, true) || detail::StretchHasDerivatives<L>)) ||
+                        (!L::is_made_for(Kinematics::plane, Strains::finite) || detail::StretchHasDerivatives<L>)) ||
                        (Remembers<L> && detail::ContinuumLawWith<L, Vec<double, memory_of<L>()>> && detail::Flows<L>);
 template <class L>
 concept TwoNodeLaw = (!Remembers<L> && detail::TwoNodeLawWith<L>) ||
@@ -103,7 +103,7 @@ concept TwoNodeLaw = (!Remembers<L> && detail::TwoNodeLawWith<L>) ||
 
 template <class M>
 concept FillsContinuum = requires(const M& of, const Numbers<double>& numbers) {
-  law_of<double>(of, Space::plane_strain, false, numbers);
+  law_of<double>(of, Space::plane_strain, Strains::small, numbers);
 };
 template <class M>
 concept FillsBars = requires(const M& of, const BarLaw<double>& elastic, const Numbers<double>& numbers) {
@@ -116,7 +116,8 @@ concept HoldsPoint = requires(const M& of, const Numbers<double>& numbers) {
 
 /// The law of a continuum, and of bars, of a material.
 template <FillsContinuum M>
-using LawOf = decltype(law_of<double>(std::declval<const M&>(), Space::plane_strain, false, Numbers<double>{}));
+using LawOf =
+    decltype(law_of<double>(std::declval<const M&>(), Space::plane_strain, Strains::small, Numbers<double>{}));
 template <FillsBars M>
 using BarLawOf = decltype(bar_of<double>(std::declval<const M&>(), BarLaw<double>{}, Numbers<double>{}));
 

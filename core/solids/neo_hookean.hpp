@@ -49,7 +49,7 @@ struct LogarithmicThickness {
 template <class T>
 struct NeoHookeanLaw {
   static constexpr bool is_finite = true;
-  static constexpr bool is_made_for(Kinematics, bool finite_strain) { return finite_strain; }
+  static constexpr bool is_made_for(Kinematics, Strains strains) { return strains == Strains::finite; }
 
   T lame, shear;
   NeoHookean::Volumetric volumetric = NeoHookean::Volumetric::quadratic;
@@ -183,7 +183,7 @@ struct NeoHookeanLaw {
 };
 
 template <class T>
-NeoHookeanLaw<T> law_of(const NeoHookean& material, Space space, bool /*finite_strain*/, const Numbers<T>& numbers) {
+NeoHookeanLaw<T> law_of(const NeoHookean& material, Space space, Strains /*strains*/, const Numbers<T>& numbers) {
   const LinearElasticLaw<T> small(numbers(material.E), numbers(material.nu), Space::plane_strain);
   return {small.lame, small.shear, material.volumetric, space};
 }
