@@ -94,7 +94,7 @@ struct ContinuumKernels {
                                           detail::gather_coordinates<T, Shape>(elements.slots.points, nodes.data()));
       }
     };
-    detail::with_continuum<Shape>(elements.body(), elements.slots.laws->of[elements.b], visit);
+    detail::with_continuum<Shape>(elements.body(), elements.slots.laws[elements.b].law, visit);
   }
   static std::array<int, Shape::nodes> nodes_of(const BodyMesh& body, int e) {
     std::array<int, Shape::nodes> nodes;
@@ -181,7 +181,7 @@ struct ContinuumKernels {
         }
       }
     };
-    detail::with_continuum<Shape>(elements.body(), elements.slots.laws->of[elements.b], of_element);
+    detail::with_continuum<Shape>(elements.body(), elements.slots.laws[elements.b].law, of_element);
   }
 
   static void flow(const Elements& elements, const Vector<T>& u, const Vector<T>& before, const FlowBranches& branches,
@@ -225,7 +225,7 @@ struct TwoNodeKernels {
   template <class F>
   static void for_each(const Elements& elements, F&& f) {
     std::vector<int> nodes;
-    detail::with_two_nodes(elements.slots.laws->of[elements.b], [&](const auto& law) {
+    detail::with_two_nodes(elements.slots.laws[elements.b].law, [&](const auto& law) {
       for (int k = 0; k < elements.count(); ++k) {
         detail::set_element_nodes(elements.body(), elements[k], nodes);
         f(law, elements[k], nodes, detail::two_places<T, D>(elements.slots.points, nodes));
@@ -293,7 +293,7 @@ struct TwoNodeKernels {
     for_each(elements, [&]<class L>(const L&, int e, const std::vector<int>&, const Places& X) {
       if constexpr (Remembers<L>)
         sink(L::plastic_strain(detail::memory_of_element<L>(elements.body(), e, memory).template take<L::memory>()),
-             norm((X.col(1) - X.col(0)).eval()) * elements.slots.areas[elements.b]);
+             norm((X.col(1) - X.col(0)).eval()) * bar_area(elements.slots, elements.b));
     });
   }
 

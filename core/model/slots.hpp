@@ -6,7 +6,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <type_traits>
 #include <vector>
 
@@ -19,7 +18,7 @@
 namespace stickslip {
 
 template <class T>
-struct BodyLaws;  // core/solids/materials.hpp, which only what computes with laws includes
+struct BodyLaw;  // core/solids/materials.hpp, which only what computes with laws includes
 
 /// Nodal forces of a load at history = 1, on the dofs on which it acts.
 template <class T>
@@ -44,9 +43,8 @@ struct NodalLoad {
 template <class T>
 struct Slots {
   Numbers<T> numbers;
-  Points<T> points;  ///< D x nodes
-  std::shared_ptr<const BodyLaws<T>> laws;
-  std::vector<T> areas;                    ///< per body: cross-section of bars
+  Points<T> points;                        ///< D x nodes
+  std::vector<BodyLaw<T>> laws;            ///< per body
   std::vector<Depth<T>> depths;            ///< per body
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
@@ -58,7 +56,18 @@ struct Slots {
   std::vector<Vector<T>> arcs;  ///< per curve that is integrated: initial arc length along it to the beginning
                                 ///< of each facet, and of all; empty for another; no entry: none is
   bool normals_turn = false;    ///< of the model's effects
+
+  Slots();  // (defined in slots_impl.hpp, where the laws are known)
+  Slots(const Slots&);
+  Slots(Slots&&) noexcept;
+  Slots& operator=(const Slots&);
+  Slots& operator=(Slots&&) noexcept;
+  ~Slots();
 };
+
+/// Cross-section of the bars of body b, area.
+template <class T>
+T bar_area(const Slots<T>& slots, int b);
 
 /// Gap of a point, length, up to which it counts as zero. If the initial gap is not exactly zero: the rounding of the
 /// coordinates. If it is: the rounding of the displacements alone, so a contact that begins closed has the same
@@ -200,6 +209,8 @@ Slots<T> make_body_slots(const Model& model, const Numbers<T>& numbers, Points<T
 /// All of these in a scalar: STICKSLIP_SLOTS(extern, T) in a header, STICKSLIP_SLOTS(, T) in one source, which includes
 /// core/model/slots_impl.hpp.
 #define STICKSLIP_SLOTS(EXTERN, T)                                                                             \
+  EXTERN template struct Slots<T>;                                                                             \
+  EXTERN template T bar_area(const Slots<T>&, int);                                                            \
   EXTERN template Vector<T> bulk_forces(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,     \
                                         const ElementLists*);                                                  \
   EXTERN template Vector<T> bulk_flow(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,       \

@@ -12,6 +12,26 @@
 namespace stickslip {
 
 template <class T>
+Slots<T>::Slots() = default;
+template <class T>
+Slots<T>::Slots(const Slots&) = default;
+template <class T>
+Slots<T>::Slots(Slots&&) noexcept = default;
+template <class T>
+Slots<T>& Slots<T>::operator=(const Slots&) = default;
+template <class T>
+Slots<T>& Slots<T>::operator=(Slots&&) noexcept = default;
+template <class T>
+Slots<T>::~Slots() = default;
+
+template <class T>
+T bar_area(const Slots<T>& slots, int b) {
+  const Law<T>& law = slots.laws[b].law;
+  if (const auto* plastic = std::get_if<PlasticBarLaw<T>>(&law)) return plastic->elastic.area;
+  return std::get<BarLaw<T>>(law).area;
+}
+
+template <class T>
 std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots) {
   const int D = model.dimension;
   std::vector<int> place(model.node_count, -1);
@@ -177,16 +197,13 @@ Slots<T> make_body_slots(const Model& model, const Numbers<T>& numbers, Points<T
   Slots<T> slots;
   slots.numbers = numbers;
   slots.points = std::move(points);
-  const auto laws = std::make_shared<BodyLaws<T>>();
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& body = model.bodies[b];
-    laws->of.push_back(detail::make_law(model.scene, model.scene.bodies[b], body.mesh, numbers));
-    slots.areas.push_back(numbers(model.scene.bodies[b].area));
+    slots.laws.push_back({detail::make_law(model.scene, model.scene.bodies[b], body.mesh, numbers)});
     const bool plane = is_continuum(body.mesh.shape) && model.scene.space != Space::axisymmetric;
     slots.depths.push_back(
         {model.scene.space == Space::axisymmetric, plane ? numbers(model.scene.bodies[b].thickness) : T(1)});
   }
-  slots.laws = laws;
   return slots;
 }
 

@@ -37,12 +37,12 @@ template <class T, class Continuum, class TwoNodes>
 void with_law(const Model& model, const Slots<T>& slots, int b, Continuum&& continuum, TwoNodes&& two_nodes) {
   const auto& body = model.bodies[b];
   with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
-    with_continuum<Shape>(body, slots.laws->of[b], [&]<Kinematics kinematics>(const auto& law) {
+    with_continuum<Shape>(body, slots.laws[b].law, [&]<Kinematics kinematics>(const auto& law) {
       continuum.template operator()<Shape, kinematics>(law);
     });
   });
   with_dimension(model.dimension, [&]<int D>() {
-    with_two_nodes(slots.laws->of[b], [&](const auto& law) { two_nodes.template operator()<D>(law); });
+    with_two_nodes(slots.laws[b].law, [&](const auto& law) { two_nodes.template operator()<D>(law); });
   });
 }
 

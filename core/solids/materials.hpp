@@ -31,10 +31,10 @@ namespace stickslip {
 template <class T>
 using Law = std::variant<LinearElasticLaw<T>, NeoHookeanLaw<T>, J2Law<T>, BarLaw<T>, PlasticBarLaw<T>, SpringLaw<T>>;
 
-/// Of all bodies of a scene.
+/// Of a body. (A class, for Slots to hold where laws are not known.)
 template <class T>
-struct BodyLaws {
-  std::vector<Law<T>> of;
+struct BodyLaw {
+  Law<T> law;
 };
 
 /// Numbers that a law remembers at a point.
