@@ -55,7 +55,8 @@ void assembly(benchmark::State& state, const std::string& element) {
   long nonzeros = 0;
   for (auto _ : state) {
     const auto engine =
-        sparse_engine(plate.model, plate.slots, system_kind(plate.model, true, ConeRadius::augmented, Backend::eigen));
+        sparse_engine(plate.model, plate.slots,
+                      system_kind(plate.model, Multipliers::unknown, ConeRadius::augmented, Backend::eigen));
     nonzeros = engine.nonzeros();
   }
   per_element(state, plate.model);

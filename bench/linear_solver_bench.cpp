@@ -134,7 +134,7 @@ void run(benchmark::State& state, Backend backend, Kind kind, Task task) {
         benchmark::DoNotOptimize(solver.solve(b));
         break;
       case Task::transposed:
-        benchmark::DoNotOptimize(solver.solve(b, true));
+        benchmark::DoNotOptimize(solver.solve(b, Taken::transposed));
         break;
     }
   state.SetLabel(solver.name());

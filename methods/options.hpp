@@ -6,7 +6,7 @@
 ///   regularisation()          the option that rho is made from; regularisation_name; and automatic_multiple, the
 ///                             multiple of the local stiffness that "auto" stands for
 ///   tangential_share()        tangential over normal rho
-///   has_unknown_multipliers   whether multipliers are unknowns of the systems solved
+///   multipliers               what the systems solved do with them
 ///   cone_radius()             which pressure the radius of its friction cones follows
 ///   is_globalised()           whether methods/rescue continues where an increment fails
 ///   prevents_penetration      whether a solution penetrates nothing. Else it is judged as contact with a layer of
@@ -30,6 +30,7 @@
 
 #include "core/algebra/described.hpp"
 #include "core/contact/cone_radius.hpp"
+#include "core/engine/multipliers.hpp"
 
 namespace stickslip {
 
@@ -125,7 +126,7 @@ struct Penalty {
       "the equations harder to solve accurately.";
   static constexpr AutomaticMultiple automatic_multiple{1e3, 1e3};
   static constexpr std::string_view regularisation_name = "stiffness";
-  static constexpr bool has_unknown_multipliers = false;
+  static constexpr Multipliers multipliers = Multipliers::given;
   static constexpr bool prevents_penetration = false;
   Regularisation stiffness;
   Number tangential_ratio = 1.0;  ///< tangential over normal penalty; > 0
@@ -169,7 +170,7 @@ struct UzawaAL {
       "missing: exact in the limit, at the price of repetition.";
   static constexpr AutomaticMultiple automatic_multiple{100, 10};
   static constexpr std::string_view regularisation_name = "scale";
-  static constexpr bool has_unknown_multipliers = false;
+  static constexpr Multipliers multipliers = Multipliers::given;
   static constexpr bool prevents_penetration = true;
   static constexpr double automatic_oversize = 1e3;  ///< of the oversized scheme
   enum class Acceleration { none, aitken, anderson };
@@ -261,7 +262,7 @@ struct MonolithicAL {
       "makes the contact forces unknowns of the same equations: exact at once, with a larger and less friendly system.";
   static constexpr AutomaticMultiple automatic_multiple{1, 1};
   static constexpr std::string_view regularisation_name = "scale";
-  static constexpr bool has_unknown_multipliers = true;
+  static constexpr Multipliers multipliers = Multipliers::unknown;
   static constexpr bool prevents_penetration = true;
   enum class Cone { augmented, multiplier };
   Regularisation scale;
@@ -310,7 +311,7 @@ concept WholeMethod = std::copyable<M> && requires(const M& method, M& changed) 
   { M::automatic_multiple } -> std::convertible_to<AutomaticMultiple>;
   { M::regularisation_name } -> std::convertible_to<std::string_view>;
   M::keys();
-  { M::has_unknown_multipliers } -> std::convertible_to<bool>;
+  { M::multipliers } -> std::convertible_to<Multipliers>;
   { M::prevents_penetration } -> std::convertible_to<bool>;
   { method.regularisation() } -> std::same_as<const Regularisation&>;
   { changed.regularisation() } -> std::same_as<Regularisation&>;
@@ -346,8 +347,8 @@ inline ConeRadius cone_radius_of(const Method& method) {
 inline const NewtonOptions& newton_of(const Method& method) {
   return std::visit([](const auto& m) -> const NewtonOptions& { return m.newton; }, method);
 }
-inline bool has_unknown_multipliers(const Method& method) {
-  return std::visit([](const auto& m) { return m.has_unknown_multipliers; }, method);
+inline Multipliers multipliers_of(const Method& method) {
+  return std::visit([](const auto& m) { return m.multipliers; }, method);
 }
 inline bool prevents_penetration(const Method& method) {
   return std::visit([](const auto& m) { return m.prevents_penetration; }, method);

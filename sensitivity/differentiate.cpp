@@ -77,7 +77,7 @@ struct Derivatives::Progress {
 
   /// Differentiates the increments up to `end`. As many are solved together as fit into one solve; one by one if the
   /// memory of the bodies links them. `follows`: the engine has the factor of the last of them.
-  void advance(const Trajectory<double>& trajectory, std::size_t end, bool follows) {
+  void advance(const Trajectory<double>& trajectory, std::size_t end, bool follows = false) {
     if (blocks.empty()) begin();
     const std::size_t together = model.effects.plasticity ? 1 : std::max(1, columns_together / parameters());
     while (done < end && !failed) take(trajectory, std::min(end, done + together), follows);
@@ -215,7 +215,7 @@ Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
       if (!taken.empty()) consistent = trajectory;
       for (std::size_t n = 0; n < taken.size(); ++n) taken[n].give(consistent->increments[n]);
     }
-    now.advance(consistent ? *consistent : trajectory, trajectory.solved_count(), false);
+    now.advance(consistent ? *consistent : trajectory, trajectory.solved_count());
     now.gradients.search = search;
     now.gradients.counters += search;
   }

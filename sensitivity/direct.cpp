@@ -5,7 +5,7 @@ namespace stickslip {
 LinearisedEquilibrium::LinearisedEquilibrium(Differentiation& problem, const State<double>& at,
                                              const RegularisationField<double>& rho,
                                              std::vector<RegularisationField<Direction>> rho_blocks, ConeRadius cone,
-                                             double time, bool unknown, const History<double>& previous)
+                                             double time, Multipliers multipliers, const History<double>& previous)
     : problem_(problem),
       primal_{problem.model, problem.slots, rho, previous, cone, time, &at.contact.facing},
       at_(at),
@@ -13,9 +13,9 @@ LinearisedEquilibrium::LinearisedEquilibrium(Differentiation& problem, const Sta
       rho_(rho),
       cone_(cone),
       time_(time),
-      unknown_(unknown) {
-  unproven_ = problem.follows && reuse_factor(problem, primal_, at, unknown);
-  valid_ = unproven_ || factorise_converged(problem, primal_, at, unknown, redundant_);
+      multipliers_(multipliers) {
+  unproven_ = problem.follows && reuse_factor(problem, primal_, at, multipliers);
+  valid_ = unproven_ || factorise_converged(problem, primal_, at, multipliers, redundant_);
   if (!valid_) return;
   if (problem.prepared) {
     load_ = std::move(*problem.prepared);
@@ -39,13 +39,13 @@ bool LinearisedEquilibrium::solve(std::vector<Vector<Direction>>& lambda) {
     rows = evaluate(compact, lambda);
     if (unproven_ && !rows.accurate) {
       if (std::exchange(solving_, Solving::refined) == Solving::unrefined) continue;
-      valid_ = factorise_converged(problem_, primal_, at_, unknown_, redundant_);
+      valid_ = factorise_converged(problem_, primal_, at_, multipliers_, redundant_);
       if (!valid_) return false;
       unproven_ = false;
       continue;
     }
     unproven_ = false;
-    if (!unknown_ || pass >= refinements || (rows.accurate && !redundant_)) {
+    if (!solves_for_multipliers() || pass >= refinements || (rows.accurate && !redundant_)) {
       fields_ = std::move(rows.fields);
       return true;
     }
@@ -62,13 +62,13 @@ void LinearisedEquilibrium::improve(const Rows& rows, std::vector<Vector<Directi
   Matrix<double> moved(compact_.rows(), compact_.cols()), multiplier = step.l;
   for (int j = 0; j < problem_.parameters; ++j) moved.col(j) = problem_.engine.compact(step.u.col(j));
   compact_ += moved;
-  if (unknown_)
+  if (solves_for_multipliers())
     for (std::size_t p = 0; p < model.points.size(); ++p)
       for (int c = 0; c < model.points[p].components(); ++c)
         multiplier.row(model.points[p].multiplier + c) *= c == 0 ? rho_[p].normal : rho_[p].tangential;
   for (int b = 0; b < static_cast<int>(compact.size()); ++b) {
     add_derivatives(compact[b], moved, problem_.blocks[b]);
-    if (unknown_) add_derivatives(lambda[b], multiplier, problem_.blocks[b]);
+    if (solves_for_multipliers()) add_derivatives(lambda[b], multiplier, problem_.blocks[b]);
   }
 }
 
@@ -87,7 +87,7 @@ LinearisedEquilibrium::Rows LinearisedEquilibrium::evaluate(const std::vector<Ve
     take_rays(input(b), lambda[b], at_.contact.ray, rows.fields[b]);
     forces.push_back(into_frames(problem_.model, slots.frames, Layout::compact,
                                  contact_forces(problem_.model, slots, rows.fields[b])));
-    if (unknown_)
+    if (solves_for_multipliers())
       multiplier_rows.push_back(multiplier_residual(problem_.model, slots, rows.fields[b].traction, lambda[b]));
   }
   auto columns = [&](std::vector<Vector<Direction>>& of) {
@@ -96,15 +96,15 @@ LinearisedEquilibrium::Rows LinearisedEquilibrium::evaluate(const std::vector<Ve
   };
   const Matrix<double> contact = columns(forces);
   rows.u = load_.reduced.kept + problem_.engine.scatter(contact);
-  if (unknown_) rows.l = columns(multiplier_rows);
-  if ((!unknown_ && !unproven_) || increment_.size() == 0) return rows;
+  if (solves_for_multipliers()) rows.l = columns(multiplier_rows);
+  if ((!solves_for_multipliers() && !unproven_) || increment_.size() == 0) return rows;
   const Matrix<double> internal = problem_.engine.apply_stiffness(increment_);
   rows.u += internal;
   for (Eigen::Index i = 0; i < rows.u.rows(); ++i)
     if (!problem_.engine.is_free(i)) rows.u.row(i).setZero();
   constexpr double rounding = 100 * unit_roundoff;  // several hundred terms are summed in a row; each rounds once
   double stiffest = 0;                              // largest A rho, force per length
-  for (std::size_t p = 0; p < rho_.size() && !unknown_; ++p)
+  for (std::size_t p = 0; p < rho_.size() && !solves_for_multipliers(); ++p)
     stiffest = std::max(stiffest, problem_.slots.geometry[p].area * std::max(rho_[p].normal, rho_[p].tangential));
   for (Eigen::Index j = 0; j < rows.u.cols() && rows.u.rows() > 0; ++j) {
     const double size = contact.rows() ? contact.col(j).cwiseAbs().maxCoeff() : 0;

@@ -31,11 +31,11 @@ class LinearisedEquilibrium {
  public:
   ///   at          the state; its multiplier is the lambda of the equilibrium
   ///   rho         in double; rho_blocks: per block
-  ///   unknown     lambda is part of p
+  ///   multipliers unknown: lambda is part of p
   ///   previous    history of the last increment
   LinearisedEquilibrium(Differentiation& problem, const State<double>& at, const RegularisationField<double>& rho,
                         std::vector<RegularisationField<Direction>> rho_blocks, ConeRadius cone, double time,
-                        bool unknown, const History<double>& previous);
+                        Multipliers multipliers, const History<double>& previous);
 
   /// Solves for the derivative. False if the tangent is singular. `lambda`: per block, D lambda as a seed. If lambda is
   /// unknown, pass D lambda = 0; its solution is added.
@@ -71,6 +71,7 @@ class LinearisedEquilibrium {
   /// lambda.
   void improve(const Rows& rows, std::vector<Vector<Direction>>& compact, std::vector<Vector<Direction>>& lambda);
   Rows evaluate(const std::vector<Vector<Direction>>& compact, const std::vector<Vector<Direction>>& lambda);
+  bool solves_for_multipliers() const { return multipliers_ == Multipliers::unknown; }
   ContactInput<Direction> input(int block) const {
     return {problem_.model,
             problem_.blocks[block].slots,
@@ -88,7 +89,8 @@ class LinearisedEquilibrium {
   const RegularisationField<double>& rho_;
   ConeRadius cone_;
   double time_;
-  bool unknown_, valid_ = false;
+  Multipliers multipliers_;
+  bool valid_ = false;
   bool redundant_ = false;                ///< constraints repeat one another: one more solve is needed
   bool unproven_ = false;                 ///< the factor is Newton's last, and not yet checked on these rows
   Solving solving_ = Solving::unrefined;  ///< unrefined as long as that is accurate

@@ -42,7 +42,7 @@ std::vector<int> touching_elements(const Model& model, const std::vector<int>& p
     else
       by += 1;
   };
-  for (const auto& law : slots.laws) std::visit(join_numbers, law);
+  for (const auto& of : slots.laws) std::visit(join_numbers, of.law);
   std::vector<int> touching;
   for (std::size_t d = 0; d < parameters.size(); ++d)
     if (by[d] != 0) touching.push_back(parameters[d]);
@@ -95,7 +95,7 @@ ElementLists touched_elements(const Model& model, const Slots<Direction>& slots)
   ElementLists lists(model.bodies.size());
   std::vector<int> nodes;
   for (std::size_t b = 0; b < lists.size(); ++b) {
-    const bool all = !is_constant(slots.depths[b].thickness) || !std::visit(has_no_derivative, slots.laws[b]);
+    const bool all = !is_constant(slots.depths[b].thickness) || !std::visit(has_no_derivative, slots.laws[b].law);
     for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e) {
       detail::set_element_nodes(model.bodies[b], e, nodes);
       if (all || std::any_of(nodes.begin(), nodes.end(), [&](int node) { return touched[node]; }))

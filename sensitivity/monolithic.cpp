@@ -14,7 +14,7 @@ bool MonolithicAL::differentiate_increment(Differentiation& problem, const State
   const auto rho = initial_regularisation(problem.slots, *this);
   std::vector<Vector<Direction>> lambda(problem.blocks.size(), lift(increment.state.multiplier));
   LinearisedEquilibrium linearised(problem, increment.state, rho, regularisation_blocks(problem), cone_radius(),
-                                   increment.time, true, previous.history);
+                                   increment.time, multipliers, previous.history);
   if (!linearised.solve(lambda)) return false;
   linearised.store_state(lambda);
   return true;
@@ -25,7 +25,7 @@ bool MonolithicAL::pull_back_increment(AdjointProblem& problem, const State<doub
   problem.tape.rewind(problem.slots_end);
   const auto rho = initial_regularisation(problem.slots, *this);
   RecordedEquilibrium recorded(problem, previous, increment.state, constant<Reverse>(rho), cone_radius(),
-                               increment.time, true, increment.requested);
+                               increment.time, multipliers, increment.requested);
   if (!recorded.valid()) return false;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);

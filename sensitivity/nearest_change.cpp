@@ -113,7 +113,8 @@ class ChangeReader {
   void read_stick(const Direction& bound, const Vector<Direction>& traction) {
     const double least = weak_margin * bound.v;
     const Direction now = norm(traction);
-    if (bound.v - now.v <= least) return lower(bound - now, true, negligible_);
+    const bool tie = bound.v - now.v <= least;
+    if (tie) return lower(bound - now, tie, negligible_);
     for (std::size_t d = 0; d < of_.block.parameters.size(); ++d) {
       const auto k = static_cast<Eigen::Index>(d);
       double squared = 0, along = 0;  // Dt . Dt and t . Dt

@@ -16,7 +16,7 @@ bool Penalty::differentiate_increment(Differentiation& problem, const State<doub
   std::vector<Vector<Direction>> lambda;
   for (auto& block : problem.blocks) lambda.push_back(stored_traction(problem.model, block.previous));
   LinearisedEquilibrium linearised(problem, increment.state, rho, regularisation_blocks(problem), ConeRadius::augmented,
-                                   increment.time, false, previous.history);
+                                   increment.time, multipliers, previous.history);
   if (!linearised.solve(lambda)) return false;
   linearised.store_state(lambda);
   return true;
@@ -26,7 +26,7 @@ bool Penalty::pull_back_increment(AdjointProblem& problem, const State<double>& 
                                   const Increment<double>& increment) const {
   problem.tape.rewind(problem.slots_end);
   RecordedEquilibrium recorded(problem, previous, increment.state, initial_regularisation(problem.recorded, *this),
-                               ConeRadius::augmented, increment.time, false, increment.requested);
+                               ConeRadius::augmented, increment.time, multipliers, increment.requested);
   if (!recorded.valid()) return false;
   for (int j = 0; j < static_cast<int>(problem.objectives.size()); ++j) {
     recorded.seed_outcome(j);

@@ -10,8 +10,8 @@ HistoryDerivative no_derivative(const History<double>& like, Eigen::Index tracti
 
 RecordedEquilibrium::RecordedEquilibrium(AdjointProblem& problem, const State<double>& previous,
                                          const State<double>& at, const RegularisationField<Reverse>& rho,
-                                         ConeRadius cone, double time, bool unknown, bool objectives)
-    : problem_(problem), at_(at), scale_(problem.model.multiplier_count), unknown_(unknown) {
+                                         ConeRadius cone, double time, Multipliers multipliers, bool objectives)
+    : problem_(problem), at_(at), scale_(problem.model.multiplier_count), multipliers_(multipliers) {
   const Model& model = problem.model;
   RegularisationField<double> plain;
   for (const auto& r : rho) plain.push_back({r.normal.v, r.tangential.v});
@@ -19,8 +19,8 @@ RecordedEquilibrium::RecordedEquilibrium(AdjointProblem& problem, const State<do
     for (int c = 0; c < model.points[p].components(); ++c)
       scale_[model.points[p].multiplier + c] = c == 0 ? plain[p].normal : plain[p].tangential;
   const ContactInput<double> input{model, problem.slots, plain, previous.history, cone, time, &at.contact.facing};
-  valid_ = (problem.follows && reuse_factor(problem, input, at, unknown)) ||
-           factorise_converged(problem, input, at, unknown, redundant_);
+  valid_ = (problem.follows && reuse_factor(problem, input, at, multipliers)) ||
+           factorise_converged(problem, input, at, multipliers, redundant_);
   problem.follows = valid_ && !redundant_;
   if (!valid_) return;
   record(previous, rho, cone, time, objectives);
@@ -83,7 +83,8 @@ void RecordedEquilibrium::record(const State<double>& previous, const Regularisa
     add_compact(model, contact_forces(model, slots, state_.contact), rows_);
   }
   rows_ = into_frames(model, slots.frames, Layout::all, std::move(rows_));
-  if (unknown_) multiplier_rows_ = multiplier_residual(model, slots, state_.contact.traction, multiplier_);
+  if (solves_for_multipliers())
+    multiplier_rows_ = multiplier_residual(model, slots, state_.contact.traction, multiplier_);
   if (!objectives) return;
   const NodalForces<Reverse> forces{internal, support_forces(model, slots, balance)};
   for (const auto& objective : model.scene.objectives)
@@ -158,7 +159,7 @@ void RecordedEquilibrium::seed_contact(int objective, const BlockVector<double>&
     for (int i = 0; i < D; ++i)
       if (const int dof = model.contact_nodes[n] * D + i; model.free_index[dof] >= 0 && rows_[dof].entry >= 0)
         adjoint(objective)[rows_[dof].entry] += compact[n * D + i];
-  if (unknown_) seed(adjoint(objective), multiplier_rows_, solution.l.col(0));
+  if (solves_for_multipliers()) seed(adjoint(objective), multiplier_rows_, solution.l.col(0));
   pull_back(objective);
 }
 
@@ -176,7 +177,7 @@ void RecordedEquilibrium::balance(int objective) {
     return Matrix<double>(into_frames(model, problem_.slots.frames, Layout::all, gather(objective, displacement_)));
   };
   const auto of_multiplier = [&]() -> Matrix<double> {
-    if (!unknown_) return Matrix<double>::Zero(model.multiplier_count, 1);
+    if (!solves_for_multipliers()) return Matrix<double>::Zero(model.multiplier_count, 1);
     return gather(objective, multiplier_).cwiseProduct(scale_);
   };
   const auto largest = [](const Matrix<double>& m) { return m.size() ? m.cwiseAbs().maxCoeff() : 0.0; };
@@ -192,8 +193,8 @@ void RecordedEquilibrium::balance(int objective) {
     problem_.counters.sensitivity_backsolves += problem_.engine.solves();
     u += a.u;
     seed_contact(objective, a);
-    if (!unknown_) break;
-    rows = reduced + problem_.engine.apply_stiffness(u, true) +
+    if (!solves_for_multipliers()) break;
+    rows = reduced + problem_.engine.apply_stiffness(u, Taken::transposed) +
            problem_.engine.scatter(to_compact<double>(model, in_frames().col(0)));
     clear_held(rows);
     rows_l = of_multiplier();

@@ -89,10 +89,11 @@ struct AdjointProblem {
 
 class RecordedEquilibrium {
  public:
-  /// `at`: the state (its multiplier is the lambda of its equilibrium). `unknown`: lambda is part of p. `rho`: recorded
-  /// after rewinding the tape to slots_end. `objectives`: the increment is a step that they may be about.
+  /// `at`: the state (its multiplier is the lambda of its equilibrium). Unknown `multipliers`: lambda is part of p.
+  /// `rho`: recorded after rewinding the tape to slots_end. `objectives`: the increment is a step that they may be
+  /// about.
   RecordedEquilibrium(AdjointProblem& problem, const State<double>& previous, const State<double>& at,
-                      const RegularisationField<Reverse>& rho, ConeRadius cone, double time, bool unknown,
+                      const RegularisationField<Reverse>& rho, ConeRadius cone, double time, Multipliers multipliers,
                       bool objectives);
 
   bool valid() const { return valid_; }
@@ -126,6 +127,7 @@ class RecordedEquilibrium {
   void clear_free(int objective);
   void seed_contact(int objective, const BlockVector<double>& solution);
   void clear_held(Matrix<double>& rows);
+  bool solves_for_multipliers() const { return multipliers_ == Multipliers::unknown; }
   std::vector<double>& adjoint(int objective) { return problem_.objectives[objective].adjoint; }
   Vector<double> gather(int objective, const Vector<Reverse>& leaves);
   static void seed(std::vector<double>& by, const Vector<Reverse>& at, const Vector<double>& derivative) {
@@ -136,7 +138,8 @@ class RecordedEquilibrium {
   AdjointProblem& problem_;
   const State<double>& at_;
   Vector<double> scale_;  ///< rho of each multiplier component
-  bool unknown_, valid_ = false, redundant_ = false;
+  Multipliers multipliers_;
+  bool valid_ = false, redundant_ = false;
   int outcome_start_ = 0;  ///< place on the tape; behind it: functions of the variables below
   Vector<Reverse> prescribed_, displacement_, multiplier_;
   int first_read_ = 0;        ///< entry of the first of AdjointProblem::read_forces

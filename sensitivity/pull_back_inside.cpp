@@ -95,8 +95,8 @@ void pull_back_loads(AdjointProblem& problem, const InteriorShare& of, const Vec
     prescribe(model, slots, of.time, prescribed);
     Vector<double> held =
         into_frames(model, frames, Layout::all,
-                    tangent_times(model, problem.slots, {of.motion, of.last_memory, of.time, &of.flow}, a, true,
-                                  &problem.at_supports));
+                    tangent_times(model, problem.slots, {of.motion, of.last_memory, of.time, &of.flow}, a,
+                                  Taken::transposed, &problem.at_supports));
     for (int dof : model.free_dofs) held[dof] = 0;
     seed(prescribed, out_of_frames(model, frames, Layout::all, std::move(held)));
   }

@@ -23,13 +23,14 @@ inline std::vector<PointTangent<double>> converged_tangents(const ContactInput<d
 /// Factorises the tangent of the engine at a converged state. False, with a message in `problem`, if it is singular and
 /// constraints do not repeat one another.
 ///
-///   problem    has engine, counters and message
-///   unknown    lambda is part of p
-///   redundant  result: constraints repeat one another; the tangent is then regularised, and a solution needs one more
-///   pass
+///   problem      has engine, counters and message
+///   multipliers  unknown: lambda is part of p
+///   redundant    result: constraints repeat one another; the tangent is then regularised, and a solution needs one
+///                more pass
 template <class Problem>
-bool factorise_converged(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown,
-                         bool& redundant) {
+bool factorise_converged(Problem& problem, const ContactInput<double>& input, const State<double>& at,
+                         Multipliers multipliers, bool& redundant) {
+  const bool unknown = multipliers == Multipliers::unknown;
   if (!problem.model.effects.linear_bulk)
     problem.engine.linearise({at.displacement, input.previous.bodies, input.time, &at.flow});
   auto tangents = converged_tangents(input, at);
@@ -54,8 +55,10 @@ bool factorise_converged(Problem& problem, const ContactInput<double>& input, co
 /// iteration, whose tangent is that of the converged state except for slip directions in 3D, or that of a neighbouring
 /// increment. False if it cannot be used. The caller must check or refine its solutions.
 template <class Problem>
-bool reuse_factor(Problem& problem, const ContactInput<double>& input, const State<double>& at, bool unknown) {
-  if (unknown && !decided_elsewhere(problem.model, problem.slots, &at.contact).empty()) return false;
+bool reuse_factor(Problem& problem, const ContactInput<double>& input, const State<double>& at,
+                  Multipliers multipliers) {
+  if (multipliers == Multipliers::unknown && !decided_elsewhere(problem.model, problem.slots, &at.contact).empty())
+    return false;
   Counters spent;
   const bool updated = problem.engine.update(converged_tangents(input, at), spent);
   spent.sensitivity_backsolves = std::exchange(spent.backsolves, 0);

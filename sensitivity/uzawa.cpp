@@ -99,8 +99,8 @@ struct SchemeEquilibrium {
   LinearisedEquilibrium linearise(Differentiation& problem, const State<double>& previous, double time) const {
     auto blocks = method.scheme().reads_regularisation ? regularisation_blocks(problem, factor)
                                                        : std::vector(problem.blocks.size(), constant<Direction>(rho));
-    return LinearisedEquilibrium(problem, state(), rho, std::move(blocks), method.cone_radius(), time, false,
-                                 previous.history);
+    return LinearisedEquilibrium(problem, state(), rho, std::move(blocks), method.cone_radius(), time,
+                                 method.multipliers, previous.history);
   }
 
   RecordedEquilibrium record(AdjointProblem& problem, const State<double>& previous, double time,
@@ -109,7 +109,8 @@ struct SchemeEquilibrium {
     const auto recorded = method.scheme().reads_regularisation
                               ? adapted(initial_regularisation(problem.recorded, method), factor)
                               : constant<Reverse>(rho);
-    return RecordedEquilibrium(problem, previous, state(), recorded, method.cone_radius(), time, false, objectives);
+    return RecordedEquilibrium(problem, previous, state(), recorded, method.cone_radius(), time, method.multipliers,
+                               objectives);
   }
 };
 
@@ -175,7 +176,7 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
         8 * unit_roundoff * (stiffest * linearised.largest_motion() + rho_over_k * linearised.load());
     bool converged = true;
     double slowest = 0;  // largest change / enough of a parameter that has not ended
-    record = {pass, 1, 0};
+    record = {.passes = pass};
     if (pass == 1) at_least = after;
     for (int j = 0; j < problem.parameters && after.rows() > 0; ++j) {
       const double change = (after.col(j) - before.col(j)).cwiseAbs().maxCoeff();
@@ -222,7 +223,7 @@ bool differentiate_augmentations(const UzawaAL& method, Differentiation& problem
     linearised.store_state(lambda);
     update_derivatives(lambda, linearised.fields());
   }
-  problem.record = {static_cast<int>(increment.augmented.size()), 1, 0};
+  problem.record = {.passes = static_cast<int>(increment.augmented.size())};
   return true;
 }
 
@@ -325,7 +326,7 @@ bool UzawaAL::differentiate_increment(Differentiation& problem, const State<doub
   auto lambda = carried_multiplier(problem, equilibrium.state().multiplier);
   if (sensitivity == Sensitivity::oversized) {
     if (!linearised.solve(lambda)) return false;
-    problem.record = {1, 1, 0};
+    problem.record = {.passes = 1};
   } else if (!iterate(problem, linearised, equilibrium.rho, lambda, tolerance)) {
     if (problem.status == Status::cap && !preconditioned) problem.message += other_scheme;
     return false;

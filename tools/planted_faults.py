@@ -130,7 +130,7 @@ FAULTS = [
     ("cylinder that does not see its axis", "core/contact/cylinder.hpp",
      "return x - <<<dot(x, axis)>>> * axis;", "T(0)"),
     ("bar's weight without its area", "core/model/load_vector_impl.hpp",
-     "length * <<<area_of(slots.laws[b])>>>;", "T(1)"),
+     "length * <<<bar_area(slots, b)>>>;", "T(1)"),
     ("total force in equal shares", "core/model/load_vector_impl.hpp",
      "T(<<<area / total>>>) * slots.numbers(load.vector[i])",
      "T(1.0 / static_cast<double>(share.size()))"),

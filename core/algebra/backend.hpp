@@ -3,7 +3,7 @@
 /// Each class holds one pattern, analysed in its constructor, and offers
 ///   Factorisation factorise(const T* values)                    a new factor, or why there is none; throws
 ///                                                               std::bad_alloc where memory ends
-///   void solve(const Matrix<T>& b, Matrix<T>& x, bool transposed)  sets x; pre: the last factorise() was done
+///   void solve(const Matrix<T>& b, Matrix<T>& x, Taken taken)   sets x; pre: the last factorise() was done
 ///   std::string name() const                                    library, version, kind, ordering
 ///   long factor_nonzeros() const                                entries of the last factor
 ///   long factor_bytes() const                                   what the library keeps of it
@@ -52,7 +52,7 @@ class CholmodFactor {
   /// Supernodes::reduce and expand. pre: the last factorise() was done.
   Reduction<double> reduce(const Matrix<double>& b);
   Matrix<double> expand(const Matrix<double>& kept, const Matrix<double>& y, const std::vector<int>* wanted);
-  void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
+  void solve(const Matrix<double>& b, Matrix<double>& x, Taken taken);
   std::string name() const;
   long factor_nonzeros() const;
   long factor_bytes() const;
@@ -72,7 +72,7 @@ class MumpsFactor {
   /// Throws std::bad_alloc where memory ends, std::runtime_error where the analysis fails otherwise.
   MumpsFactor(std::shared_ptr<const Pattern> pattern, Symmetry symmetry);
   Factorisation factorise(const double* values);
-  void solve(const Matrix<double>& b, Matrix<double>& x, bool transposed);
+  void solve(const Matrix<double>& b, Matrix<double>& x, Taken taken);
   std::string name() const;
   long factor_nonzeros() const;
   long factor_bytes() const;
@@ -91,7 +91,7 @@ class EigenFactor {
  public:
   explicit EigenFactor(std::shared_ptr<const Pattern> pattern);
   Factorisation factorise(const T* values);
-  void solve(const Matrix<T>& b, Matrix<T>& x, bool transposed);
+  void solve(const Matrix<T>& b, Matrix<T>& x, Taken taken);
   std::string name() const;
   long factor_nonzeros() const;
   long factor_bytes() const;

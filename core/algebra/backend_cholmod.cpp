@@ -190,7 +190,7 @@ Factorisation CholmodFactor::factorise(const double* values) {
   return {Outcome::done, "", d.supernodes().smallest_pivot([&](int row) { return values[d.diagonal[row]]; })};
 }
 
-void CholmodFactor::solve(const Matrix<double>& b, Matrix<double>& x, bool /*transposed: symmetric*/) {
+void CholmodFactor::solve(const Matrix<double>& b, Matrix<double>& x, Taken /*symmetric*/) {
   Data& d = *data_;
   cholmod_dense rhs = Data::view(b);
   if (!cholmod_solve2(CHOLMOD_A, d.factor, &rhs, nullptr, &d.x, nullptr, &d.y, &d.e, &d.common))

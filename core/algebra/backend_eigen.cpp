@@ -89,9 +89,9 @@ Factorisation EigenFactor<T>::factorise(const T* values) {
 }
 
 template <class T>
-void EigenFactor<T>::solve(const Matrix<T>& b, Matrix<T>& x, bool transposed) {
+void EigenFactor<T>::solve(const Matrix<T>& b, Matrix<T>& x, Taken taken) {
   Data& d = *data_;
-  if (transposed) {
+  if (taken == Taken::transposed) {
     x = d.lu.transpose().solve(b);  // (R A)^T y = b, x = R y
     x = d.row_scale.asDiagonal() * x;
   } else {

@@ -118,13 +118,13 @@ Factorisation MumpsFactor::factorise(const double* values) {
   return {Outcome::done, "", d.mumps.rinfog[19 - 1], d.mumps.rinfog[12 - 1] < 0 ? -1 : 1};
 }
 
-void MumpsFactor::solve(const Matrix<double>& b, Matrix<double>& x, bool transposed) {
+void MumpsFactor::solve(const Matrix<double>& b, Matrix<double>& x, Taken taken) {
   Data& d = *data_;
   x = b;
   d.mumps.rhs = x.data();
   d.mumps.nrhs = static_cast<MUMPS_INT>(b.cols());
   d.mumps.lrhs = d.mumps.n;
-  d.icntl(9) = transposed ? 2 : 1;
+  d.icntl(9) = taken == Taken::transposed ? 2 : 1;
   if (d.run(job_solve) < 0) throw std::bad_alloc();  // the factor is good, so nothing else can go wrong
 }
 

@@ -24,7 +24,7 @@ void DenseFactor<T>::equilibrate(const Matrix<T>& A) {
 }
 
 template <class T>
-bool DenseFactor<T>::factorise(const Matrix<T>& A, bool symmetric, long& factorizations) {
+bool DenseFactor<T>::factorise(const Matrix<T>& A, Symmetry symmetry, long& factorizations) {
   cholesky_ = valid_ = false;
   message_.clear();
   row_.resize(0);
@@ -35,7 +35,8 @@ bool DenseFactor<T>::factorise(const Matrix<T>& A, bool symmetric, long& factori
   }
   if (A.rows() == 0) return valid_ = true;
   norm_ = A.cwiseAbs().colwise().sum().maxCoeff();
-  if (symmetric && std::is_same_v<T, double>) {  // Eigen's LL^T of complex matrices is for Hermitian ones
+  // (Eigen's LL^T of complex matrices is for Hermitian ones.)
+  if (symmetry == Symmetry::positive_definite && std::is_same_v<T, double>) {
     row_ = column_ = A.diagonal().cwiseAbs().unaryExpr(&half_to_one);
     llt_.compute(row_.template cast<T>().asDiagonal() * A * column_.template cast<T>().asDiagonal());
     cholesky_ = llt_.info() == Eigen::Success;
@@ -53,8 +54,9 @@ bool DenseFactor<T>::factorise(const Matrix<T>& A, bool symmetric, long& factori
 }
 
 template <class T>
-Matrix<T> DenseFactor<T>::solve(const Matrix<T>& B, bool transposed) const {
+Matrix<T> DenseFactor<T>::solve(const Matrix<T>& B, Taken taken) const {
   if (B.rows() == 0) return B;
+  const bool transposed = taken == Taken::transposed;
   const Vector<T> before = (transposed ? column_ : row_).template cast<T>();
   const Vector<T> after = (transposed ? row_ : column_).template cast<T>();
   Matrix<T> x = before.asDiagonal() * B;
@@ -80,7 +82,9 @@ template <class T>
 double DenseFactor<T>::condition_estimate() const {
   if (!valid_ || row_.size() == 0) return 0;
   const auto apply = [&](const Vector<T>& x) -> Vector<T> { return solve(x); };
-  const auto adjoint = [&](const Vector<T>& x) -> Vector<T> { return solve(x.conjugate(), true).conjugate(); };
+  const auto adjoint = [&](const Vector<T>& x) -> Vector<T> {
+    return solve(x.conjugate(), Taken::transposed).conjugate();
+  };
   return norm_ * one_norm_estimate<T>(static_cast<int>(row_.size()), apply, adjoint).first;
 }
 

@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <string>
 
-#include "core/algebra/scalar.hpp"
+#include "core/algebra/linear_solver.hpp"
 
 namespace stickslip {
 
@@ -14,12 +14,12 @@ namespace stickslip {
 template <class T>
 class DenseFactor {
  public:
-  /// Factorises A. `symmetric`: LL^T is tried first. Returns false where A is not finite or singular to working
+  /// Factorises A. Positive definite: LL^T is tried first. Returns false where A is not finite or singular to working
   /// precision (condition number of the scaled matrix beyond 0.1 / epsilon, the limit of LinearSolver); `message` then
   /// says which. Adds to `factorizations` how many were made.
-  bool factorise(const Matrix<T>& A, bool symmetric, long& factorizations);
-  /// X of A X = B, or A^T X = B (no conjugation). pre: the last factorise() returned true.
-  Matrix<T> solve(const Matrix<T>& B, bool transposed = false) const;
+  bool factorise(const Matrix<T>& A, Symmetry symmetry, long& factorizations);
+  /// X of A X = B, or A^T X = B. pre: the last factorise() returned true.
+  Matrix<T> solve(const Matrix<T>& B, Taken taken = Taken::as_is) const;
   /// Sign of the determinant, +1 or -1 (complex: by the real parts of the pivots).
   int determinant_sign() const;
   /// Whether the last factor is LL^T.

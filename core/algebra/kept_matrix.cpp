@@ -15,13 +15,13 @@ using RowMajor = Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor
 /// r -= A x and s += |A||x| for `columns` vectors stored row by row; A^T instead of A where transposed. K is the
 /// number of vectors where it is known at compile time, else 0.
 template <int K, class T>
-void subtract_product(const Pattern& pattern, const T* values, bool transposed, const RowMajor<T>& x,
+void subtract_product(const Pattern& pattern, const T* values, Taken taken, const RowMajor<T>& x,
                       const RowMajor<double>& size_of_x, RowMajor<T>& r, RowMajor<double>& s) {
   const int k = K > 0 ? K : static_cast<int>(x.cols());
   for (int j = 0; j < pattern.size; ++j)
     for (int e = pattern.column_start[j]; e < pattern.column_start[j + 1]; ++e) {
-      const auto to = static_cast<std::ptrdiff_t>(transposed ? j : pattern.row[e]) * k;
-      const auto from = static_cast<std::ptrdiff_t>(transposed ? pattern.row[e] : j) * k;
+      const auto to = static_cast<std::ptrdiff_t>(taken == Taken::transposed ? j : pattern.row[e]) * k;
+      const auto from = static_cast<std::ptrdiff_t>(taken == Taken::transposed ? pattern.row[e] : j) * k;
       const T a = values[e];
       const double size_of_a = std::abs(a);
       for (int c = 0; c < k; ++c) {
@@ -128,9 +128,9 @@ double KeptMatrix<T>::one_norm(const Scaling* scaling) const {
 }
 
 template <class T>
-double KeptMatrix<T>::backward_error(const Matrix<T>& x, const Matrix<T>& b, bool transposed) {
+double KeptMatrix<T>::backward_error(const Matrix<T>& x, const Matrix<T>& b, Taken taken) {
   const int* entry = nullptr;
-  if (!is_stored_by_rows(transposed)) {
+  if (!is_stored_by_rows(taken)) {
     if (!by_rows_) by_rows_ = transposed_entries(*pattern_);
     if (by_rows_->empty()) return std::numeric_limits<double>::quiet_NaN();
     entry = by_rows_->data();
@@ -149,11 +149,11 @@ double KeptMatrix<T>::backward_error(const Matrix<T>& x, const Matrix<T>& b, boo
 }
 
 template <class T>
-typename KeptMatrix<T>::Check KeptMatrix<T>::check(const Matrix<T>& solution, const Matrix<T>& b, bool transposed) {
+typename KeptMatrix<T>::Check KeptMatrix<T>::check(const Matrix<T>& solution, const Matrix<T>& b, Taken taken) {
   Check result{0, Matrix<T>(b.rows(), b.cols())};
   for (Eigen::Index first = 0; first < b.cols(); first += checked_together) {
     const Eigen::Index count = std::min<Eigen::Index>(checked_together, b.cols() - first);
-    const Check part = check_columns(solution.middleCols(first, count), b.middleCols(first, count), transposed);
+    const Check part = check_columns(solution.middleCols(first, count), b.middleCols(first, count), taken);
     result.error = larger(result.error, part.error);
     result.residual.middleCols(first, count) = part.residual;
   }
@@ -161,19 +161,18 @@ typename KeptMatrix<T>::Check KeptMatrix<T>::check(const Matrix<T>& solution, co
 }
 
 template <class T>
-typename KeptMatrix<T>::Check KeptMatrix<T>::check_columns(const Matrix<T>& solution, const Matrix<T>& b,
-                                                           bool transposed) {
-  const bool as_rows = is_stored_by_rows(transposed);  // a gather is faster than a scatter
+typename KeptMatrix<T>::Check KeptMatrix<T>::check_columns(const Matrix<T>& solution, const Matrix<T>& b, Taken taken) {
+  const Taken rows = is_stored_by_rows(taken) ? Taken::transposed : Taken::as_is;  // a gather is faster than a scatter
   const RowMajor<T> x = solution.array();
   const RowMajor<double> size_of_x = x.abs();
   RowMajor<T> r = b.array();
   RowMajor<double> denominator = r.abs();
   if (x.cols() == 1)
-    subtract_product<1>(*pattern_, values_.data(), as_rows, x, size_of_x, r, denominator);
+    subtract_product<1>(*pattern_, values_.data(), rows, x, size_of_x, r, denominator);
   else if (x.cols() == checked_together)
-    subtract_product<checked_together>(*pattern_, values_.data(), as_rows, x, size_of_x, r, denominator);
+    subtract_product<checked_together>(*pattern_, values_.data(), rows, x, size_of_x, r, denominator);
   else
-    subtract_product<0>(*pattern_, values_.data(), as_rows, x, size_of_x, r, denominator);
+    subtract_product<0>(*pattern_, values_.data(), rows, x, size_of_x, r, denominator);
   Check result{0, r.matrix()};
   const auto worst = [&] {
     double error = 0;
@@ -188,8 +187,9 @@ typename KeptMatrix<T>::Check KeptMatrix<T>::check_columns(const Matrix<T>& solu
   };
   result.error = worst();
   if (!(result.error > refine_above)) return result;
-  const Eigen::ArrayXd of_row = (transposed ? scaling().column : scaling().row).array();
-  const Eigen::ArrayXd of_unknown = (transposed ? scaling().row : scaling().column).array();
+  const bool turned = taken == Taken::transposed;
+  const Eigen::ArrayXd of_row = (turned ? scaling().column : scaling().row).array();
+  const Eigen::ArrayXd of_unknown = (turned ? scaling().row : scaling().column).array();
   // Arioli, Demmel and Duff's tau.
   const double noise = 1000.0 * pattern_->size * std::numeric_limits<double>::epsilon();
   for (Eigen::Index c = 0; c < x.cols(); ++c) {

@@ -35,7 +35,7 @@ class KeptMatrix {
   /// Largest sum of |a_ij| over a column, of the scaled matrix where `scaling` is not null.
   double one_norm(const Scaling* scaling) const;
   /// Oettli and Prager's backward error of X; not a number where rows of an unsymmetric pattern are not at hand.
-  double backward_error(const Matrix<T>& x, const Matrix<T>& b, bool transposed);
+  double backward_error(const Matrix<T>& x, const Matrix<T>& b, Taken taken);
 
   struct Check {
     double error = 0;
@@ -44,12 +44,12 @@ class KeptMatrix {
   /// Backward error of X and the residual B - A X. Oettli and Prager's |r|_i / (|A||x| + |b|)_i says nothing where a
   /// row holds rounding noise alone (displacements that are zero by symmetry); there the denominator is that of
   /// M. Arioli, J. W. Demmel, I. S. Duff, SIAM J. Matrix Anal. Appl. 10 (1989) 165-190, with the matrix equilibrated.
-  Check check(const Matrix<T>& solution, const Matrix<T>& b, bool transposed);
+  Check check(const Matrix<T>& solution, const Matrix<T>& b, Taken taken);
 
  private:
   static constexpr int checked_together = 8;  // that fit into registers
-  bool is_stored_by_rows(bool transposed) const { return transposed || symmetry_ != Symmetry::general; }
-  Check check_columns(const Matrix<T>& solution, const Matrix<T>& b, bool transposed);
+  bool is_stored_by_rows(Taken taken) const { return taken == Taken::transposed || symmetry_ != Symmetry::general; }
+  Check check_columns(const Matrix<T>& solution, const Matrix<T>& b, Taken taken);
 
   std::shared_ptr<const Pattern> pattern_;
   Symmetry symmetry_ = Symmetry::general;

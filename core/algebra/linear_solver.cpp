@@ -62,9 +62,9 @@ struct LinearSolver<T>::Implementation {
         *last);
   }
 
-  Matrix<T> backsolve(const Matrix<T>& b, bool transposed) {
+  Matrix<T> backsolve(const Matrix<T>& b, Taken taken = Taken::as_is) {
     Matrix<T> x;
-    std::visit([&](auto& factor) { factor.solve(b, x, transposed); }, *last);
+    std::visit([&](auto& factor) { factor.solve(b, x, taken); }, *last);
     return x;
   }
 
@@ -78,13 +78,12 @@ struct LinearSolver<T>::Implementation {
   std::pair<double, Vector<T>> condition(const Scaling* scale) {
     // (R A C)^-1 = C^-1 A^-1 R^-1. The adjoint conjugates, the transposed solve does not.
     const auto apply = [&](const Vector<T>& z) -> Vector<T> {
-      if (!scale) return backsolve(z, false);
-      return backsolve(z.cwiseQuotient(scale->row.template cast<T>()), false)
-          .cwiseQuotient(scale->column.template cast<T>());
+      if (!scale) return backsolve(z);
+      return backsolve(z.cwiseQuotient(scale->row.template cast<T>())).cwiseQuotient(scale->column.template cast<T>());
     };
     const auto adjoint = [&](const Vector<T>& z) -> Vector<T> {
-      if (!scale) return backsolve(z.conjugate(), true).conjugate();
-      return backsolve(z.conjugate().cwiseQuotient(scale->column.template cast<T>()), true)
+      if (!scale) return backsolve(z.conjugate(), Taken::transposed).conjugate();
+      return backsolve(z.conjugate().cwiseQuotient(scale->column.template cast<T>()), Taken::transposed)
           .conjugate()
           .cwiseQuotient(scale->row.template cast<T>());
     };
@@ -163,22 +162,22 @@ bool LinearSolver<T>::factorise(const T* values) {
 }
 
 template <class T>
-Matrix<T> LinearSolver<T>::solve(const Matrix<T>& right_hand_sides, bool transposed) {
+Matrix<T> LinearSolver<T>::solve(const Matrix<T>& right_hand_sides, Taken taken) {
   Implementation& s = *implementation_;
   if (!s.usable) throw std::logic_error("LinearSolver: solve without a factorisation");
   if (right_hand_sides.rows() != s.pattern->size)
     throw std::logic_error("LinearSolver: right-hand side of another size");
   s.backward_error = 0;
   if (right_hand_sides.size() == 0) return right_hand_sides;
-  Matrix<T> x = s.backsolve(right_hand_sides, transposed);
+  Matrix<T> x = s.backsolve(right_hand_sides, taken);
   s.counters.backsolves += static_cast<long>(x.cols());
-  s.backward_error = s.matrix.backward_error(x, right_hand_sides, transposed);
+  s.backward_error = s.matrix.backward_error(x, right_hand_sides, taken);
   if (s.backward_error <= refine_above) return x;
-  auto check = s.matrix.check(x, right_hand_sides, transposed);
+  auto check = s.matrix.check(x, right_hand_sides, taken);
   if (check.error > refine_above) {
-    Matrix<T> refined = x + s.backsolve(check.residual, transposed);
+    Matrix<T> refined = x + s.backsolve(check.residual, taken);
     s.counters.backsolves += static_cast<long>(x.cols());
-    const auto checked = s.matrix.check(refined, right_hand_sides, transposed);
+    const auto checked = s.matrix.check(refined, right_hand_sides, taken);
     if (checked.error < check.error) {
       x = std::move(refined);
       check.error = checked.error;

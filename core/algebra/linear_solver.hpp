@@ -27,6 +27,9 @@ enum class Symmetry {
   general             ///< unsymmetric values (slip), symmetric structure: LU
 };
 
+/// How a matrix is taken, in a product or a solve; without conjugation.
+enum class Taken { as_is, transposed };
+
 enum class Backend { automatic, cholmod, mumps, eigen };
 
 /// Work done so far; equal on every machine, so it is the primary measure of cost.
@@ -74,9 +77,9 @@ class LinearSolver {
   /// not finite; `message` then says which pivot or row. pre: analyse(). Throws std::bad_alloc where memory ends.
   bool factorise(const T* values);
 
-  /// Solves A X = B (or A^T X = B, without conjugation) for all columns of B in one call and returns X.
+  /// Solves A X = B (or A^T X = B) for all columns of B in one call and returns X.
   /// pre: the last factorise() returned true.
-  Matrix<T> solve(const Matrix<T>& right_hand_sides, bool transposed = false);
+  Matrix<T> solve(const Matrix<T>& right_hand_sides, Taken taken = Taken::as_is);
 
   /// Schur complement of all other rows on the kept ones, A_kk - A_ko A_oo^-1 A_ok: L_kk L_kk^T of a Cholesky factor
   /// that has them last (CHOLMOD), else the inverse of the kept block of A^-1, by a back-solve for each. pre: the last

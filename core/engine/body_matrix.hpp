@@ -55,12 +55,13 @@ struct BodyMatrix {
   std::vector<T> values = {};
 
   /// The matrix times vectors of all dofs, or its transpose; zero where there is no row.
-  Matrix<T> times(const Matrix<T>& u, bool transposed) const;
+  Matrix<T> times(const Matrix<T>& u, Taken taken) const;
   double largest_diagonal() const;
 };
 
 template <class T>
-Matrix<T> BodyMatrix<T>::times(const Matrix<T>& u, bool transposed) const {
+Matrix<T> BodyMatrix<T>::times(const Matrix<T>& u, Taken taken) const {
+  const bool transposed = taken == Taken::transposed;
   Matrix<T> rows = Matrix<T>::Zero(u.rows(), u.cols());
   for (std::size_t j = 0; j < dofs.size(); ++j)
     for (int k = pattern->column_start[j]; k < pattern->column_start[j + 1]; ++k)

@@ -167,16 +167,16 @@ void MixedRows::add_blocks(RowLists& lists) const {
 
 int mixed_displacements(const Model& model) { return static_cast<int>(MixedRows(model).dofs.size()); }
 
-RowLists tangent_rows(const Model& model, bool unknown_multipliers, const MixedRows* mixed) {
+RowLists tangent_rows(const Model& model, Multipliers multipliers, const MixedRows* mixed) {
   const auto& row_of_dof = mixed ? mixed->row_of_dof : model.free_index;
   auto lists = element_rows(model, row_of_dof, mixed ? BodyKind::changing : BodyKind::all);
   if (mixed) mixed->add_blocks(lists);
-  const int multipliers = static_cast<int>((mixed ? mixed->dofs : model.free_dofs).size());
+  const int behind = static_cast<int>((mixed ? mixed->dofs : model.free_dofs).size());
   for (const auto& point : model.points) {
     for (int node : point.nodes)
       for (int i = 0; i < model.dimension; ++i) lists.row.push_back(row_of_dof[node * model.dimension + i]);
-    for (int c = 0; unknown_multipliers && c < point.components(); ++c)
-      lists.row.push_back(multipliers + point.multiplier + c);
+    for (int c = 0; multipliers == Multipliers::unknown && c < point.components(); ++c)
+      lists.row.push_back(behind + point.multiplier + c);
     lists.start.push_back(static_cast<int>(lists.row.size()));
   }
   return lists;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/algebra/linear_solver.hpp"
+#include "core/engine/multipliers.hpp"
 #include "core/model/model.hpp"
 
 namespace stickslip {
@@ -77,6 +78,6 @@ int mixed_displacements(const Model& model);
 /// Rows of the sparse tangent that each element, and after them each contact point, has entries in. A point's: its
 /// nodes' dofs, and its multipliers where these are unknown; -1: prescribed. `mixed`: of a scene that is condensed in
 /// part; the blocks of its condensed bodies come before the points.
-RowLists tangent_rows(const Model& model, bool unknown_multipliers, const MixedRows* mixed = nullptr);
+RowLists tangent_rows(const Model& model, Multipliers multipliers, const MixedRows* mixed = nullptr);
 
 }  // namespace stickslip

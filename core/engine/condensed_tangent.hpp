@@ -41,7 +41,7 @@ class CondensedTangent : public TangentSystem<T> {
   }
   /// Condenses the bodies' tangent. False where K_ii is not positive definite.
   bool accepts_bodies(Counters& counters) override { return condensed_ || condense(counters); }
-  Matrix<T> times(const Matrix<T>& u, bool transposed) const override { return matrix_.times(u, transposed); }
+  Matrix<T> times(const Matrix<T>& u, Taken taken) const override { return matrix_.times(u, taken); }
   double stiffness() const override { return matrix_.largest_diagonal(); }
   /// (A tangent that depends on the displacement alone may serve again.)
   const Vector<T>* condensed_at() const override {
@@ -70,7 +70,7 @@ class CondensedTangent : public TangentSystem<T> {
   const std::string& message() const override { return dense_.message(); }
   std::string name() const override;
   int unknowns() const override {
-    return static_cast<int>(matrix_.dofs.size()) + (kind_.unknown_multipliers ? model_.multiplier_count : 0);
+    return static_cast<int>(matrix_.dofs.size()) + (kind_.has_unknown_multipliers() ? model_.multiplier_count : 0);
   }
   long nonzeros() const override { return matrix_.pattern->nonzeros(); }
   void add_holdings(EngineHoldings& held) const override;
@@ -115,7 +115,7 @@ CondensedTangent<T>::CondensedTangent(const Model& model, const Slots<T>& slots,
     if (dense_.is_free(c)) kept_.push_back(static_cast<int>(c));
   schur_ = Matrix<T>::Zero(contacts, contacts);
   const auto touched = touched_by(std::vector<PointTangent<T>>(model.points.size()), {});
-  dense_rows_ = kind.unknown_multipliers ? model.multiplier_count : 0;
+  dense_rows_ = kind.has_unknown_multipliers() ? model.multiplier_count : 0;
   for (int row : kept_) dense_rows_ += touched[row];
 }
 

@@ -30,7 +30,7 @@ class DenseSystem : public PointSystem<T> {
   // (S stays as it is, or is looked after by whoever changes it)
   void take_over() override {}
   void take_bodies() override {}
-  Matrix<T> times(const Matrix<T>& u, bool /*transposed*/) const override { return stiffness_ * u; }  // (symmetric)
+  Matrix<T> times(const Matrix<T>& u, Taken /*symmetric*/) const override { return stiffness_ * u; }
   double stiffness() const override {
     double largest = 0;
     for (Eigen::Index i = 0; i < stiffness_.rows(); ++i) largest = std::max(largest, value(stiffness_(i, i)));
@@ -64,14 +64,14 @@ class DenseSystem : public PointSystem<T> {
   bool make_factor(Counters& counters) override;
   void take_multipliers();
   void put_bodies(Matrix<T>& K) const;
-  void add_points(const std::vector<PointTangent<T>>& tangents, bool with_multipliers, Matrix<T>& K) const;
-  Matrix<T> solve_factor(const Matrix<T>& b, bool transposed) override { return factor_.solve(b, transposed); }
-  Matrix<T> multiply(const Matrix<T>& x, bool transposed) const override {
-    return transposed ? Matrix<T>(matrix_.transpose() * x) : Matrix<T>(matrix_ * x);
+  void add_points(const std::vector<PointTangent<T>>& tangents, Multipliers multipliers, Matrix<T>& K) const;
+  Matrix<T> solve_factor(const Matrix<T>& b, Taken taken) override { return factor_.solve(b, taken); }
+  Matrix<T> multiply(const Matrix<T>& x, Taken taken) const override {
+    return taken == Taken::transposed ? Matrix<T>(matrix_.transpose() * x) : Matrix<T>(matrix_ * x);
   }
   int determinant_sign() const override { return factor_.determinant_sign(); }
   bool leaves_out(const PointTangent<T>& tangent) const override {
-    return kind_.unknown_multipliers && tangent.row_w.cwiseAbs().maxCoeff() == 0;
+    return kind_.has_unknown_multipliers() && tangent.row_w.cwiseAbs().maxCoeff() == 0;
   }
 
   const Matrix<T>& stiffness_;
@@ -103,7 +103,7 @@ void DenseSystem<T>::take_multipliers() {
   multipliers_.clear();
   row_of_multiplier_.assign(model_.multiplier_count, -1);
   open_diagonal_ = Vector<T>::Constant(model_.multiplier_count, T(1));
-  if (!kind_.unknown_multipliers) return;
+  if (!kind_.has_unknown_multipliers()) return;
   for (std::size_t p = 0; p < made_.tangents.size(); ++p) {
     const bool open = leaves_out(made_.tangents[p]);
     for (int c = 0; c < model_.points[p].components(); ++c) {
@@ -126,11 +126,11 @@ void DenseSystem<T>::put_bodies(Matrix<T>& K) const {
 }
 
 template <class T>
-void DenseSystem<T>::add_points(const std::vector<PointTangent<T>>& tangents, bool with_multipliers,
+void DenseSystem<T>::add_points(const std::vector<PointTangent<T>>& tangents, Multipliers multipliers,
                                 Matrix<T>& K) const {
   for (std::size_t p = 0; p < tangents.size(); ++p) {
     const auto rows = this->rows_of(p, this->places_of(p, tangents[p]));
-    this->for_each_entry_of(p, tangents[p], with_multipliers, [&](int row, int column, const T& x) {
+    this->for_each_entry_of(p, tangents[p], multipliers, [&](int row, int column, const T& x) {
       if (rows[row] >= 0 && rows[column] >= 0) K(rows[row], rows[column]) += x;
     });
   }
@@ -143,7 +143,7 @@ std::optional<int> DenseSystem<T>::motions_unresisted(const std::vector<PointTan
     const auto free = static_cast<Eigen::Index>(displacements_.size());
     Matrix<double> K(free, free);
     put_bodies(K);
-    add_points(springs, false, K);
+    add_points(springs, Multipliers::given, K);
     K.diagonal() *= PointSystem<T>::raised;
     if (K.llt().info() == Eigen::Success) return 0;
     const auto values = Eigen::SelfAdjointEigenSolver<Matrix<double>>(K, Eigen::EigenvaluesOnly).eigenvalues();
@@ -159,14 +159,14 @@ bool DenseSystem<T>::make_factor(Counters& counters) {
   K = Matrix<T>::Zero(this->size(), this->size());
   put_bodies(K);
   this->for_each_hold([&](int row, const T& x) { K(row, row) += x; });
-  add_points(made_.tangents, kind_.unknown_multipliers, K);
-  return factor_.factorise(K, kind_.symmetry == Symmetry::positive_definite, counters.factorizations);
+  add_points(made_.tangents, kind_.multipliers, K);
+  return factor_.factorise(K, kind_.symmetry, counters.factorizations);
 }
 
 template <class T>
 BlockVector<T> DenseSystem<T>::solve(const BlockVector<T>& rows, Solving how) {
   auto out = PointSystem<T>::solve(rows, how);
-  if (kind_.unknown_multipliers)
+  if (kind_.has_unknown_multipliers())
     for (int k = 0; k < model_.multiplier_count; ++k)
       if (row_of_multiplier_[k] < 0) out.l.row(k) = rows.l.row(k) / open_diagonal_[k];
   return out;

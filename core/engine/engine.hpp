@@ -87,7 +87,7 @@ class Engine {
     return bodies_->tangent_times(at, motion);
   }
   /// The bodies' stiffness times engine increments (engine rows), or its transpose.
-  Matrix<T> apply_stiffness(const Matrix<T>& u, bool transposed = false) const { return system().times(u, transposed); }
+  Matrix<T> apply_stiffness(const Matrix<T>& u, Taken taken = Taken::as_is) const { return system().times(u, taken); }
 
   // ---- systems
 

@@ -43,15 +43,15 @@ double derivatives_of(const Scene& scene) {
 }
 
 /// Factor of a tangent, ordered freely; of a scene that is condensed in part, or not at all.
-FactorSize tangent_factor(const Model& model, bool unknown_multipliers, const MixedRows* mixed) {
+FactorSize tangent_factor(const Model& model, Multipliers multipliers, const MixedRows* mixed) {
   const auto displacements = (mixed ? mixed->dofs : model.free_dofs).size();
-  const int size = static_cast<int>(displacements) + (unknown_multipliers ? model.multiplier_count : 0);
+  const int size = static_cast<int>(displacements) + (multipliers == Multipliers::unknown ? model.multiplier_count : 0);
   if (size == 0) return {};
-  return predict_factor(make_pattern(size, tangent_rows(model, unknown_multipliers, mixed)), 0);
+  return predict_factor(make_pattern(size, tangent_rows(model, multipliers, mixed)), 0);
 }
 
 /// The price where the tangent of some body changes in each iteration, and each derivative needs a tangent of its own.
-EnginePrice price_of_changing(const Model& model, bool unknown_multipliers, Symmetry symmetry,
+EnginePrice price_of_changing(const Model& model, Multipliers multipliers, Symmetry symmetry,
                               const FactorSize& bodies) {
   const double increments = static_cast<double>(model.times.size()), derivatives = derivatives_of(model.scene);
   const double tangents = increments * (next_changing.tangents + (derivatives > 0 ? 1 : 0));
@@ -59,12 +59,11 @@ EnginePrice price_of_changing(const Model& model, bool unknown_multipliers, Symm
   const auto price_of = [&](const FactorSize& factor) {
     return (setting_up + tangents * kind_of(symmetry)) * factor.flops + kind_of(symmetry) * 4 * factor.entries * solves;
   };
-  EnginePrice price{price_of(tangent_factor(model, unknown_multipliers, nullptr)),
-                    std::numeric_limits<double>::infinity()};
+  EnginePrice price{price_of(tangent_factor(model, multipliers, nullptr)), std::numeric_limits<double>::infinity()};
   if (!has_mixed_bodies(model)) return price;
   const MixedRows mixed(model);
   const double contact = static_cast<double>(mixed.contact.size());
-  price.condensed = (setting_up + 1) * bodies.flops + price_of(tangent_factor(model, unknown_multipliers, &mixed)) +
+  price.condensed = (setting_up + 1) * bodies.flops + price_of(tangent_factor(model, multipliers, &mixed)) +
                     increments * 4 * bodies.entries * (of_solve + derivatives * of_block_solve) +
                     increments * next_changing.tangents * 2 * contact * contact * of_solve;
   return price;
@@ -78,8 +77,8 @@ FactorSize bodies_factor(const Model& model) {
   return predict_factor(rows.pattern, static_cast<int>(rows.contact.size()));
 }
 
-EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry, const FactorSize& factor) {
-  if (!model.effects.linear_bulk) return price_of_changing(model, unknown_multipliers, symmetry, factor);
+EnginePrice predict_price(const Model& model, Multipliers multipliers, Symmetry symmetry, const FactorSize& factor) {
+  if (!model.effects.linear_bulk) return price_of_changing(model, multipliers, symmetry, factor);
   const double sparse_kind = kind_of(symmetry);
   const double dense_kind = symmetry == Symmetry::positive_definite ? 1 : lu;
   const double increments = static_cast<double>(model.times.size());
@@ -95,7 +94,7 @@ EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry
   price.sparse = setting_up * factor.flops + linearisations * sparse_kind * free_ordering * factor.flops +
                  sparse_kind * solve * (solves * of_solve + increments * derivatives * of_block_solve);
   const double rows = static_cast<double>(model.contact_nodes.size()) * model.dimension +
-                      (unknown_multipliers ? model.multiplier_count : 0);
+                      (multipliers == Multipliers::unknown ? model.multiplier_count : 0);
   const double dense = dense_kind * rows * rows * rows / 3;
   const double differentiated = derivatives > 0 ? increments : 0;  // each with a tangent of its own
   price.condensed = (setting_up + 1) * factor.flops + (linearisations + differentiated) * of_dense * dense +

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/algebra/linear_solver.hpp"
+#include "core/engine/multipliers.hpp"
 #include "core/model/model.hpp"
 
 namespace stickslip {
@@ -18,9 +19,9 @@ struct EnginePrice {
 /// made.
 FactorSize bodies_factor(const Model& model);
 
-/// Price of all increments of a scene and their derivatives. `unknown_multipliers`: those are unknowns of the tangents;
-/// `symmetry`: of the tangents; `factor`: of the bodies.
-EnginePrice predict_price(const Model& model, bool unknown_multipliers, Symmetry symmetry, const FactorSize& factor);
+/// Price of all increments of a scene and their derivatives. `multipliers` and `symmetry`: of the tangents; `factor`:
+/// of the bodies.
+EnginePrice predict_price(const Model& model, Multipliers multipliers, Symmetry symmetry, const FactorSize& factor);
 
 /// Whether each tangent of bodies that change is to be condensed: `bodies`: their factor with the contact dofs last;
 /// `dense_rows`: of what is left; `symmetry`: of the whole tangent.

@@ -54,7 +54,7 @@ class FullBodies : public Elimination<T> {
   void hold(const BodyMotion<T>& at, const Vector<T>& u) override;
   void release() override { held_.reset(); }
   Vector<T> tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const override {
-    return stickslip::tangent_times(model_, slots_, at, motion, false);
+    return stickslip::tangent_times(model_, slots_, at, motion, Taken::as_is);
   }
 
   // ---- their matrix
@@ -124,7 +124,7 @@ template <class T>
 Vector<T> FullBodies<T>::residual(const Vector<T>& u, const TangentSystem<T>& system, ForceScale& scale) const {
   const int D = model_.dimension;
   const Vector<T> moved = spread(u);
-  Vector<T> rows = held_ ? Vector<T>(held_->rows + system.times(u - held_->u, false).col(0)) : forces(moved);
+  Vector<T> rows = held_ ? Vector<T>(held_->rows + system.times(u - held_->u, Taken::as_is).col(0)) : forces(moved);
   scale.force =
       std::max({scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), condensed_force()});
   rows -= external_;

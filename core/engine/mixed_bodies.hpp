@@ -37,7 +37,7 @@ class SomeBodiesCondensed : public FullBodies<T> {
     return this->in_axes(std::move(expanded));
   }
   Vector<T> tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const override {
-    Vector<T> rows = this->in_frames(stickslip::tangent_times(model_, slots_, at, motion, false, &others_));
+    Vector<T> rows = this->in_frames(stickslip::tangent_times(model_, slots_, at, motion, Taken::as_is, &others_));
     add_stiffness_times(this->in_frames(motion), rows);
     return this->in_axes(std::move(rows));
   }

@@ -27,8 +27,9 @@ bool same_tangent(const PointTangent<T>& a, const PointTangent<T>& b) {
 /// the point's displacement rows (node-major) followed by its multiplier rows (if unknown). A tangent with places has a
 /// row for each dof already: it counts as one of a single node.
 template <class T, class Add>
-void for_each_entry(const PointGeometry<T>& geometry, const PointTangent<T>& tangent, bool unknown_multipliers,
+void for_each_entry(const PointGeometry<T>& geometry, const PointTangent<T>& tangent, Multipliers multipliers,
                     Add&& add) {
+  const bool unknown = multipliers == Multipliers::unknown;
   const int D = static_cast<int>(tangent.force_w.rows()), C = static_cast<int>(tangent.row_l.rows());
   const bool by_places = !tangent.places.empty();
   const int nodes = by_places ? 1 : static_cast<int>(geometry.weights.size());
@@ -37,28 +38,28 @@ void for_each_entry(const PointGeometry<T>& geometry, const PointTangent<T>& tan
     for (int i = 0; i < D; ++i) {
       for (int m = 0; m < nodes; ++m)
         for (int j = 0; j < D; ++j) add(n * D + i, m * D + j, weight(n) * weight(m) * tangent.force_w(i, j));
-      for (int c = 0; unknown_multipliers && c < C; ++c) {
+      for (int c = 0; unknown && c < C; ++c) {
         add(n * D + i, nodes * D + c, weight(n) * tangent.force_l(i, c));
         add(nodes * D + c, n * D + i, weight(n) * tangent.row_w(c, i));
       }
     }
-  for (int r = 0; unknown_multipliers && r < C; ++r)
+  for (int r = 0; unknown && r < C; ++r)
     for (int c = 0; c < C; ++c) add(nodes * D + r, nodes * D + c, tangent.row_l(r, c));
 }
 
 /// The same in the frames of the nodes.
 template <class T, class Add>
 void for_each_framed_entry(const Model& model, const Slots<T>& slots, int p, const PointTangent<T>& tangent,
-                           bool unknown_multipliers, Add&& add) {
+                           Multipliers multipliers, Add&& add) {
   const auto& geometry = slots.geometry[p];
-  if (model.framed.empty()) return for_each_entry(geometry, tangent, unknown_multipliers, add);
+  if (model.framed.empty()) return for_each_entry(geometry, tangent, multipliers, add);
   std::vector<int> nodes = model.points[p].nodes;
   if (!tangent.places.empty()) nodes.clear();
   for (int place : tangent.places) nodes.push_back(model.contact_nodes[place]);
-  const auto rows =
-      static_cast<Eigen::Index>(nodes.size()) * model.dimension + (unknown_multipliers ? tangent.row_l.rows() : 0);
+  const auto rows = static_cast<Eigen::Index>(nodes.size()) * model.dimension +
+                    (multipliers == Multipliers::unknown ? tangent.row_l.rows() : 0);
   Matrix<T> K = Matrix<T>::Constant(rows, rows, T(0));
-  for_each_entry(geometry, tangent, unknown_multipliers, [&](int r, int c, const T& x) { K(r, c) += x; });
+  for_each_entry(geometry, tangent, multipliers, [&](int r, int c, const T& x) { K(r, c) += x; });
   K = into_frames(model, slots.frames, nodes, std::move(K));
   for (int c = 0; c < rows; ++c)
     for (int r = 0; r < rows; ++r) add(r, c, K(r, c));
@@ -87,7 +88,7 @@ class PointSystem : public TangentSystem<T> {
     return (determinant_sign() != expected) != made_.update.turns_sign();
   }
   int unknowns() const override {
-    return static_cast<int>(displacements_.size()) + (kind_.unknown_multipliers ? model_.multiplier_count : 0);
+    return static_cast<int>(displacements_.size()) + (kind_.has_unknown_multipliers() ? model_.multiplier_count : 0);
   }
 
  protected:
@@ -96,9 +97,9 @@ class PointSystem : public TangentSystem<T> {
 
   /// Factorises the bodies with the points of made_. False where the system is singular: message() says why.
   virtual bool make_factor(Counters& counters) = 0;
-  virtual Matrix<T> solve_factor(const Matrix<T>& b, bool transposed) = 0;
+  virtual Matrix<T> solve_factor(const Matrix<T>& b, Taken taken) = 0;
   /// The matrix that was factorised, or its transpose, times x.
-  virtual Matrix<T> multiply(const Matrix<T>& x, bool transposed) const = 0;
+  virtual Matrix<T> multiply(const Matrix<T>& x, Taken taken) const = 0;
   virtual int determinant_sign() const = 0;
   /// Whether the factor has no rows for the multipliers of a point.
   virtual bool leaves_out(const PointTangent<T>& /*tangent*/) const { return false; }
@@ -110,7 +111,7 @@ class PointSystem : public TangentSystem<T> {
     std::vector<int> rows;
     for (int place : places)
       for (int i = 0; i < D; ++i) rows.push_back(row_of_contact_[place * D + i]);
-    if (kind_.unknown_multipliers)
+    if (kind_.has_unknown_multipliers())
       for (int c = 0; c < model_.points[p].components(); ++c)
         rows.push_back(row_of_multiplier_[model_.points[p].multiplier + c]);
     return rows;
@@ -126,8 +127,8 @@ class PointSystem : public TangentSystem<T> {
         if (const int row = row_of_contact_[n * model_.dimension + i]; row >= 0) add(row, T(made_.hold[n]));
   }
   template <class Add>
-  void for_each_entry_of(std::size_t p, const PointTangent<T>& tangent, bool with_multipliers, Add&& add) const {
-    detail::for_each_framed_entry(model_, slots_, static_cast<int>(p), tangent, with_multipliers, add);
+  void for_each_entry_of(std::size_t p, const PointTangent<T>& tangent, Multipliers multipliers, Add&& add) const {
+    detail::for_each_framed_entry(model_, slots_, static_cast<int>(p), tangent, multipliers, add);
   }
   /// What diagonal entries are multiplied by, so that a tangent which is positive definite but for its rounding is so.
   static constexpr double raised = 1 + 1e-10;
@@ -171,12 +172,12 @@ bool PointSystem<T>::update(const std::vector<PointTangent<T>>& tangents, const 
       const auto add = [&](double sign) {
         return [&change, sign](int r, int c, double x) { change.block(r, c) += sign * x; };
       };
-      for_each_entry_of(p, tangents[p], kind_.unknown_multipliers, add(1));
-      for_each_entry_of(p, made_.tangents[p], kind_.unknown_multipliers, add(-1));
+      for_each_entry_of(p, tangents[p], kind_.multipliers, add(1));
+      for_each_entry_of(p, made_.tangents[p], kind_.multipliers, add(-1));
       changes.push_back(std::move(change));
     }
     return made_.update.take(std::move(changes), size(), counters,
-                             [this](const Matrix<double>& b) { return solve_factor(b, false); });
+                             [this](const Matrix<double>& b) { return solve_factor(b, Taken::as_is); });
   }
   return false;
 }
@@ -184,15 +185,15 @@ bool PointSystem<T>::update(const std::vector<PointTangent<T>>& tangents, const 
 /// The solution with the factor and its update; only in double there are any.
 template <class T>
 Matrix<T> PointSystem<T>::solve_updated(const Matrix<T>& b, Solving how) {
-  const bool transposed = how == Solving::transposed;
+  const Taken taken = how == Solving::transposed ? Taken::transposed : Taken::as_is;
   if constexpr (std::is_same_v<T, double>) {
-    const auto solve = [this, transposed](const Matrix<T>& r) { return solve_factor(r, transposed); };
-    const auto product = [this, transposed](const Matrix<T>& x) { return multiply(x, transposed); };
-    if (!made_.update.empty() && transposed) return made_.update.solve_transposed(b, solve, product);
+    const auto solve = [this, taken](const Matrix<T>& r) { return solve_factor(r, taken); };
+    const auto product = [this, taken](const Matrix<T>& x) { return multiply(x, taken); };
+    if (!made_.update.empty() && taken == Taken::transposed) return made_.update.solve_transposed(b, solve, product);
     if (!made_.update.empty())
       return how == Solving::unrefined ? made_.update.solve(b, solve) : made_.update.solve(b, solve, product);
   }
-  return solve_factor(b, transposed);
+  return solve_factor(b, taken);
 }
 
 template <class T>

@@ -20,7 +20,7 @@ class SparseSystem : public PointSystem<T> {
 
   void take_over() override { lay_out({}); }
   void take_bodies() override { matrix_.values = bodies_.tangent(matrix_); }
-  Matrix<T> times(const Matrix<T>& u, bool transposed) const override { return matrix_.times(u, transposed); }
+  Matrix<T> times(const Matrix<T>& u, Taken taken) const override { return matrix_.times(u, taken); }
   double stiffness() const override { return matrix_.largest_diagonal(); }
   std::optional<int> motions_unresisted(const std::vector<PointTangent<T>>& springs, Counters& counters) override;
   double condition_estimate() override { return solver_.condition_estimate(); }
@@ -56,11 +56,11 @@ class SparseSystem : public PointSystem<T> {
   std::vector<int> entries_of(const std::vector<int>& rows) const;
   T& diagonal(std::vector<T>& values, int row) const { return values[locate(*matrix_.pattern, row, row)]; }
   /// Adds points to the values of a matrix of this pattern.
-  void add_points(const std::vector<PointTangent<T>>& tangents, bool with_multipliers, std::vector<T>& values) const;
+  void add_points(const std::vector<PointTangent<T>>& tangents, Multipliers multipliers, std::vector<T>& values) const;
 
   bool make_factor(Counters& counters) override;
-  Matrix<T> solve_factor(const Matrix<T>& b, bool transposed) override { return solver_.solve(b, transposed); }
-  Matrix<T> multiply(const Matrix<T>& x, bool transposed) const override;
+  Matrix<T> solve_factor(const Matrix<T>& b, Taken taken) override { return solver_.solve(b, taken); }
+  Matrix<T> multiply(const Matrix<T>& x, Taken taken) const override;
   int determinant_sign() const override { return solver_.determinant_sign(); }
 
   const FullBodies<T>& bodies_;
@@ -81,7 +81,7 @@ SparseSystem<T>::SparseSystem(const Model& model, const Slots<T>& slots, const S
       matrix_{bodies.row_of_dof(), bodies.dofs()},
       solver_(kind.backend) {
   displacements_ = matrix_.dofs;
-  multipliers_.resize(kind.unknown_multipliers ? model.multiplier_count : 0);
+  multipliers_.resize(kind.has_unknown_multipliers() ? model.multiplier_count : 0);
   std::iota(multipliers_.begin(), multipliers_.end(), 0);
   row_of_multiplier_.resize(multipliers_.size());
   std::iota(row_of_multiplier_.begin(), row_of_multiplier_.end(), static_cast<int>(displacements_.size()));
@@ -153,14 +153,14 @@ bool SparseSystem<T>::has_room(const std::vector<PointTangent<T>>& tangents) con
 }
 
 template <class T>
-void SparseSystem<T>::add_points(const std::vector<PointTangent<T>>& tangents, bool with_multipliers,
+void SparseSystem<T>::add_points(const std::vector<PointTangent<T>>& tangents, Multipliers multipliers,
                                  std::vector<T>& values) const {
   for (std::size_t p = 0; p < tangents.size(); ++p) {
     const auto own =
         point_map_.empty() ? entries_of(this->rows_of(p, this->places_of(p, tangents[p]))) : std::vector<int>();
     const auto& map = point_map_.empty() ? own : point_map_[p];
     const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(map.size()))));
-    this->for_each_entry_of(p, tangents[p], with_multipliers, [&](int row, int column, const T& x) {
+    this->for_each_entry_of(p, tangents[p], multipliers, [&](int row, int column, const T& x) {
       if (const int entry = map[row * n + column]; entry >= 0) values[entry] += x;
     });
   }
@@ -179,7 +179,7 @@ std::optional<int> SparseSystem<T>::motions_unresisted(const std::vector<PointTa
     }
     if (inertia_->size().flops > dear) return std::nullopt;
     std::vector<double> values = matrix_.values;
-    add_points(springs, false, values);
+    add_points(springs, Multipliers::given, values);
     const int displacements = static_cast<int>(displacements_.size());
     for (int row = 0; row < displacements; ++row) diagonal(values, row) *= PointSystem<T>::raised;
     for (int row = displacements; row < this->size(); ++row) diagonal(values, row) = 1;
@@ -198,7 +198,7 @@ bool SparseSystem<T>::make_factor(Counters& counters) {
   }
   values_ = matrix_.values;
   this->for_each_hold([&](int row, const T& x) { diagonal(values_, row) += x; });
-  add_points(made_.tangents, kind_.unknown_multipliers, values_);
+  add_points(made_.tangents, kind_.multipliers, values_);
   if (!std::exchange(analysed_, true)) {
     solver_.analyse(matrix_.pattern, kind_.symmetry);
     ++counters.analyses;
@@ -210,7 +210,8 @@ bool SparseSystem<T>::make_factor(Counters& counters) {
 }
 
 template <class T>
-Matrix<T> SparseSystem<T>::multiply(const Matrix<T>& x, bool transposed) const {
+Matrix<T> SparseSystem<T>::multiply(const Matrix<T>& x, Taken taken) const {
+  const bool transposed = taken == Taken::transposed;
   const Pattern& pattern = *matrix_.pattern;
   Matrix<T> product = Matrix<T>::Zero(x.rows(), x.cols());
   for (int j = 0; j < pattern.size; ++j)

@@ -14,19 +14,19 @@ bool integrates(const Model& model) {
 /// symmetric if nothing couples them: if the radius of the cone is fixed while the system is solved (that of given
 /// multipliers), or if the bound does not depend on the pressure. If frames turn, friction follows them and has no
 /// potential, whatever its law.
-Symmetry symmetry_of(const Model& model, bool unknown_multipliers, ConeRadius cone) {
-  const bool fixed_radius = cone == ConeRadius::multiplier && !unknown_multipliers;
+Symmetry symmetry_of(const Model& model, Multipliers multipliers, ConeRadius cone) {
+  const bool fixed_radius = cone == ConeRadius::multiplier && multipliers == Multipliers::given;
   if (!model.followers.empty()) return Symmetry::general;  // of a pressure that follows a side with ends
   if (model.effects.friction && model.effects.current_geometry) return Symmetry::general;
   if (model.effects.current_geometry && integrates(model)) return Symmetry::general;  // its forces have no potential
   if (model.effects.coupled_friction && !fixed_radius) return Symmetry::general;
-  return unknown_multipliers ? Symmetry::indefinite : Symmetry::positive_definite;
+  return multipliers == Multipliers::unknown ? Symmetry::indefinite : Symmetry::positive_definite;
 }
 
 }  // namespace
 
-SystemKind system_kind(const Model& model, bool unknown_multipliers, ConeRadius cone, Backend backend) {
-  return {unknown_multipliers, symmetry_of(model, unknown_multipliers, cone), backend};
+SystemKind system_kind(const Model& model, Multipliers multipliers, ConeRadius cone, Backend backend) {
+  return {multipliers, symmetry_of(model, multipliers, cone), backend};
 }
 
 }  // namespace stickslip

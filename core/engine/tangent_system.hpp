@@ -11,6 +11,7 @@
 
 #include "core/algebra/linear_solver.hpp"
 #include "core/contact/cone_radius.hpp"
+#include "core/engine/multipliers.hpp"
 #include "core/engine/tangent_update.hpp"
 #include "core/model/model.hpp"
 
@@ -31,12 +32,13 @@ enum class Solving { refined, unrefined, transposed };
 
 /// What is known of all tangents of a run.
 struct SystemKind {
-  bool unknown_multipliers = false;  ///< the monolithic method's layout, [displacements; multipliers]
+  Multipliers multipliers = Multipliers::given;
   Symmetry symmetry = Symmetry::general;
   Backend backend = Backend::automatic;
+  bool has_unknown_multipliers() const { return multipliers == Multipliers::unknown; }
 };
 /// `cone`: of all its tangents.
-SystemKind system_kind(const Model& model, bool unknown_multipliers, ConeRadius cone, Backend backend);
+SystemKind system_kind(const Model& model, Multipliers multipliers, ConeRadius cone, Backend backend);
 
 /// What an engine holds now, in bytes, and what it has done beside what Counters count.
 struct EngineHoldings {
@@ -95,7 +97,7 @@ class TangentSystem {
   /// Whether it can solve with the tangent that was taken; if not, another system has to take over.
   virtual bool accepts_bodies(Counters& /*counters*/) { return true; }
   /// The bodies' stiffness times increments, or its transpose; and its largest diagonal entry.
-  virtual Matrix<T> times(const Matrix<T>& u, bool transposed) const = 0;
+  virtual Matrix<T> times(const Matrix<T>& u, Taken taken) const = 0;
   virtual double stiffness() const = 0;
   /// Where the bodies were when their tangent was condensed, if it may serve again close to there; else nullptr.
   virtual const Vector<T>* condensed_at() const { return nullptr; }

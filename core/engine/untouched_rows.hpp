@@ -25,10 +25,10 @@ class UntouchedRows {
     others_.clear();
     for (int row : rows) (touched[row] ? touched_ : others_).push_back(row);
     long unused = 0;
-    if (!factor_.factorise(S(others_, others_), true, unused)) {
+    if (!factor_.factorise(S(others_, others_), Symmetry::positive_definite, unused)) {
       touched_ = rows;
       others_.clear();
-      factor_.factorise(Matrix<T>(0, 0), true, unused);
+      factor_.factorise(Matrix<T>(0, 0), Symmetry::positive_definite, unused);
     }
     W_ = factor_.solve(S(others_, touched_));
     reduced_ = Matrix<T>::Zero(S.rows(), S.cols());

@@ -94,7 +94,7 @@ struct ContinuumKernels {
                                           detail::gather_coordinates<T, Shape>(elements.slots.points, nodes.data()));
       }
     };
-    detail::with_continuum<Shape>(elements.body(), elements.slots.laws[elements.b], visit);
+    detail::with_continuum<Shape>(elements.body(), elements.slots.laws[elements.b].law, visit);
   }
   static std::array<int, Shape::nodes> nodes_of(const BodyMesh& body, int e) {
     std::array<int, Shape::nodes> nodes;
@@ -161,7 +161,7 @@ struct ContinuumKernels {
   static void stretch_edge(const Elements& elements, const ElementEdge& edge, const Vector<T>& u,
                            std::vector<ThicknessStretch<T>>& stretches) {
     const auto of_element = [&]<Kinematics kinematics, class L>(const L& law) {
-      if constexpr (kinematics == Kinematics::plane && L::is_made_for(kinematics, true) && !Remembers<L>) {
+      if constexpr (kinematics == Kinematics::plane && L::is_made_for(kinematics, Strains::finite) && !Remembers<L>) {
         const auto nodes = nodes_of(elements.body(), edge.element);
         const auto X = detail::gather_coordinates<T, Shape>(elements.slots.points, nodes.data());
         const auto local = detail::gather_displacements<T, Shape>(u, nodes.data());
@@ -181,7 +181,7 @@ struct ContinuumKernels {
         }
       }
     };
-    detail::with_continuum<Shape>(elements.body(), elements.slots.laws[elements.b], of_element);
+    detail::with_continuum<Shape>(elements.body(), elements.slots.laws[elements.b].law, of_element);
   }
 
   static void flow(const Elements& elements, const Vector<T>& u, const Vector<T>& before, const FlowBranches& branches,
@@ -225,7 +225,7 @@ struct TwoNodeKernels {
   template <class F>
   static void for_each(const Elements& elements, F&& f) {
     std::vector<int> nodes;
-    detail::with_two_nodes(elements.slots.laws[elements.b], [&](const auto& law) {
+    detail::with_two_nodes(elements.slots.laws[elements.b].law, [&](const auto& law) {
       for (int k = 0; k < elements.count(); ++k) {
         detail::set_element_nodes(elements.body(), elements[k], nodes);
         f(law, elements[k], nodes, detail::two_places<T, D>(elements.slots.points, nodes));
@@ -293,7 +293,7 @@ struct TwoNodeKernels {
     for_each(elements, [&]<class L>(const L&, int e, const std::vector<int>&, const Places& X) {
       if constexpr (Remembers<L>)
         sink(L::plastic_strain(detail::memory_of_element<L>(elements.body(), e, memory).template take<L::memory>()),
-             norm((X.col(1) - X.col(0)).eval()) * detail::area_of(elements.slots.laws[elements.b]));
+             norm((X.col(1) - X.col(0)).eval()) * bar_area(elements.slots, elements.b));
     });
   }
 

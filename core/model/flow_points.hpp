@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/model/element_kernels.hpp"
+#include "core/solids/hardening.hpp"
 
 namespace stickslip {
 

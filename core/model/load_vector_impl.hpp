@@ -65,7 +65,7 @@ void add_body_force(const Model& model, const Load& load, int b, const Slots<T>&
     const auto nodes = element_nodes(body, e);
     if (body.mesh.shape == ElementShape::bar2) {
       const T length = norm((slots.points.col(nodes[1]) - slots.points.col(nodes[0])).eval());
-      const T half = T(0.5) * length * area_of(slots.laws[b]);
+      const T half = T(0.5) * length * bar_area(slots, b);
       for (int node : nodes) add(node, half);
     }
     with_shape(body.mesh.shape, [&]<class Shape>(Shape) {

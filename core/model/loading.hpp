@@ -1,6 +1,7 @@
 /// What drives a model in time: external nodal forces and prescribed displacements.
 #pragma once
 
+#include "core/algebra/linear_solver.hpp"
 #include "core/model/frames.hpp"
 #include "core/model/slots.hpp"
 #include "core/model/supports.hpp"
@@ -42,18 +43,19 @@ Vector<T> less_external_forces(const Model& model, const Slots<T>& slots, double
   return internal;
 }
 
-/// The tangent times a vector, all dofs: of the forces of elements, less those of pressures that follow the bodies.
-/// `transposed`: its transpose instead. `only`: elements that are visited.
+/// The tangent, or its transpose, times a vector, all dofs: of the forces of elements, less those of pressures that
+/// follow the bodies. `only`: elements that are visited.
 template <class T>
 Vector<T> tangent_times(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, const Vector<T>& vector,
-                        bool transposed, const ElementLists* only = nullptr) {
+                        Taken taken, const ElementLists* only = nullptr) {
   const int D = model.dimension;
   Vector<T> product = bulk_tangent_times(model, slots, at, vector, only);
   if (!model.followers.empty())
     for_each_follower_tangent(model, slots, at, [&](const std::vector<int>& nodes, const Matrix<T>& K) {
       for (Eigen::Index r = 0; r < K.rows(); ++r)
         for (Eigen::Index c = 0; c < K.cols(); ++c)
-          product[nodes[r / D] * D + r % D] -= (transposed ? K(c, r) : K(r, c)) * vector[nodes[c / D] * D + c % D];
+          product[nodes[r / D] * D + r % D] -=
+              (taken == Taken::transposed ? K(c, r) : K(r, c)) * vector[nodes[c / D] * D + c % D];
     });
   return product;
 }

@@ -278,7 +278,7 @@ Model make_model(const Scene& scene, Seconds& spent) {
     model.node_count += model.bodies.back().mesh.node_count;
     place_memory(model, body.material, model.bodies.back());
     if (!is_continuum(model.bodies.back().mesh.shape)) continue;
-    const std::string unfit = fault_of(body.material, model.bodies.back().kinematics, scene.finite_strain);
+    const std::string unfit = fault_of(body.material, model.bodies.back().kinematics, strains_of(scene.finite_strain));
     if (!unfit.empty()) throw ModelError("the material " + unfit, "/bodies/" + body.name + "/material");
   }
   Points<double> points(model.dimension, model.node_count);

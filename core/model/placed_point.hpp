@@ -37,7 +37,7 @@ T offset_of(const ContactPoint& point, const Model& model, const Slots<T>& slots
 
 template <class T>
 T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
-  if (point.area_of_bar) return area_of(slots.laws[point.slave_body]);
+  if (point.area_of_bar) return bar_area(slots, point.slave_body);
   if (point.area_edges.empty()) return T(1);
   T area{};
   for (const auto& edge : point.area_edges) {

@@ -20,7 +20,7 @@
 #include "core/contact/rigid_surfaces.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/model/table.hpp"
-#include "core/solids/materials.hpp"
+#include "core/solids/descriptions.hpp"
 
 namespace stickslip {
 

@@ -14,9 +14,11 @@
 #include "core/model/history.hpp"
 #include "core/model/model.hpp"
 #include "core/solids/edges.hpp"
-#include "core/solids/materials.hpp"
 
 namespace stickslip {
+
+template <class T>
+struct BodyLaw;  // core/solids/materials.hpp, which only what computes with laws includes
 
 /// Nodal forces of a load at history = 1, on the dofs on which it acts.
 template <class T>
@@ -42,7 +44,7 @@ template <class T>
 struct Slots {
   Numbers<T> numbers;
   Points<T> points;                        ///< D x nodes
-  std::vector<Law<T>> laws;                ///< per body
+  std::vector<BodyLaw<T>> laws;            ///< per body
   std::vector<Depth<T>> depths;            ///< per body
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
@@ -54,7 +56,18 @@ struct Slots {
   std::vector<Vector<T>> arcs;  ///< per curve that is integrated: initial arc length along it to the beginning
                                 ///< of each facet, and of all; empty for another; no entry: none is
   bool normals_turn = false;    ///< of the model's effects
+
+  Slots();  // (defined in slots_impl.hpp, where the laws are known)
+  Slots(const Slots&);
+  Slots(Slots&&) noexcept;
+  Slots& operator=(const Slots&);
+  Slots& operator=(Slots&&) noexcept;
+  ~Slots();
 };
+
+/// Cross-section of the bars of body b, area.
+template <class T>
+T bar_area(const Slots<T>& slots, int b);
 
 /// Gap of a point, length, up to which it counts as zero. If the initial gap is not exactly zero: the rounding of the
 /// coordinates. If it is: the rounding of the displacements alone, so a contact that begins closed has the same
@@ -70,13 +83,6 @@ namespace detail {
 template <class T>
 Vec<T, 2> point2(const Points<T>& points, int node) {
   return {points(0, node), points(1, node)};
-}
-
-/// Cross-section of bars, area.
-template <class T>
-T area_of(const Law<T>& bars) {
-  if (const auto* plastic = std::get_if<PlasticBarLaw<T>>(&bars)) return plastic->elastic.area;
-  return std::get<BarLaw<T>>(bars).area;
 }
 
 }  // namespace detail
@@ -203,6 +209,8 @@ Slots<T> make_body_slots(const Model& model, const Numbers<T>& numbers, Points<T
 /// All of these in a scalar: STICKSLIP_SLOTS(extern, T) in a header, STICKSLIP_SLOTS(, T) in one source, which includes
 /// core/model/slots_impl.hpp.
 #define STICKSLIP_SLOTS(EXTERN, T)                                                                             \
+  EXTERN template struct Slots<T>;                                                                             \
+  EXTERN template T bar_area(const Slots<T>&, int);                                                            \
   EXTERN template Vector<T> bulk_forces(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,     \
                                         const ElementLists*);                                                  \
   EXTERN template Vector<T> bulk_flow(const Model&, const Slots<T>&, const Vector<T>&, const Vector<T>&,       \

@@ -7,8 +7,29 @@
 #include "core/model/element_nodes.hpp"
 #include "core/model/load_vector_impl.hpp"
 #include "core/model/slots.hpp"
+#include "core/solids/materials.hpp"
 
 namespace stickslip {
+
+template <class T>
+Slots<T>::Slots() = default;
+template <class T>
+Slots<T>::Slots(const Slots&) = default;
+template <class T>
+Slots<T>::Slots(Slots&&) noexcept = default;
+template <class T>
+Slots<T>& Slots<T>::operator=(const Slots&) = default;
+template <class T>
+Slots<T>& Slots<T>::operator=(Slots&&) noexcept = default;
+template <class T>
+Slots<T>::~Slots() = default;
+
+template <class T>
+T bar_area(const Slots<T>& slots, int b) {
+  const Law<T>& law = slots.laws[b].law;
+  if (const auto* plastic = std::get_if<PlasticBarLaw<T>>(&law)) return plastic->elastic.area;
+  return std::get<BarLaw<T>>(law).area;
+}
 
 template <class T>
 std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots) {
@@ -158,7 +179,7 @@ Law<T> make_law(const Scene& scene, const Body& body, const Mesh& mesh, const Nu
               const BarLaw<T> bar{numbers(material.E) * numbers(body.area), numbers(body.area), scene.finite_strain};
               return bar_of<T>(material, bar, numbers);
             }
-          return law_of<T>(material, scene.space, scene.finite_strain, numbers);
+          return law_of<T>(material, scene.space, strains_of(scene.finite_strain), numbers);
         }
       },
       body.material);
@@ -178,7 +199,7 @@ Slots<T> make_body_slots(const Model& model, const Numbers<T>& numbers, Points<T
   slots.points = std::move(points);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const auto& body = model.bodies[b];
-    slots.laws.push_back(detail::make_law(model.scene, model.scene.bodies[b], body.mesh, numbers));
+    slots.laws.push_back({detail::make_law(model.scene, model.scene.bodies[b], body.mesh, numbers)});
     const bool plane = is_continuum(body.mesh.shape) && model.scene.space != Space::axisymmetric;
     slots.depths.push_back(
         {model.scene.space == Space::axisymmetric, plane ? numbers(model.scene.bodies[b].thickness) : T(1)});

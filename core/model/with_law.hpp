@@ -3,6 +3,7 @@
 
 #include "core/model/slots.hpp"
 #include "core/solids/elements.hpp"
+#include "core/solids/materials.hpp"
 
 namespace stickslip::detail {
 
@@ -13,7 +14,7 @@ void with_continuum(const BodyMesh& body, const Law<T>& law, F&& f) {
   const auto with = [&]<class L>(const L& of) {
     if constexpr (requires { L::is_finite; })
       with_kinematics<Shape>(body.kinematics, [&]<Kinematics kinematics>() {
-        if constexpr (L::is_made_for(kinematics, false) || L::is_made_for(kinematics, true))
+        if constexpr (L::is_made_for(kinematics, Strains::small) || L::is_made_for(kinematics, Strains::finite))
           f.template operator()<kinematics>(of);
       });
   };
@@ -36,12 +37,12 @@ template <class T, class Continuum, class TwoNodes>
 void with_law(const Model& model, const Slots<T>& slots, int b, Continuum&& continuum, TwoNodes&& two_nodes) {
   const auto& body = model.bodies[b];
   with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
-    with_continuum<Shape>(body, slots.laws[b], [&]<Kinematics kinematics>(const auto& law) {
+    with_continuum<Shape>(body, slots.laws[b].law, [&]<Kinematics kinematics>(const auto& law) {
       continuum.template operator()<Shape, kinematics>(law);
     });
   });
   with_dimension(model.dimension, [&]<int D>() {
-    with_two_nodes(slots.laws[b], [&](const auto& law) { two_nodes.template operator()<D>(law); });
+    with_two_nodes(slots.laws[b].law, [&](const auto& law) { two_nodes.template operator()<D>(law); });
   });
 }
 

@@ -53,8 +53,8 @@ namespace detail {
 /// Whether elements of a law can have a mean dilatation at finite strain.
 template <class Law, Kinematics kinematics>
 constexpr bool averages() {
-  if constexpr (has_mean_dilatation(kinematics) && requires { Law::is_made_for(kinematics, true); })
-    return Law::is_made_for(kinematics, true);
+  if constexpr (has_mean_dilatation(kinematics) && requires { Law::is_made_for(kinematics, Strains::finite); })
+    return Law::is_made_for(kinematics, Strains::finite);
   return false;
 }
 

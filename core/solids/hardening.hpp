@@ -11,15 +11,10 @@
 #include <limits>
 #include <vector>
 
-#include "core/algebra/number.hpp"
 #include "core/algebra/scalar.hpp"
+#include "core/solids/descriptions.hpp"
 
 namespace stickslip {
-
-/// A row of a table, as a scene gives it.
-struct HardeningRow {
-  Number strain, stress;
-};
 
 /// The branch that a flow takes. Derivatives at a tie between two take one that is given
 /// (sensitivity/ties/flow_tie.hpp).

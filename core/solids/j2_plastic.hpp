@@ -24,11 +24,6 @@
 
 namespace stickslip {
 
-struct J2Plastic {
-  Number E, nu, yield, hardening;        ///< `hardening`: behind the last row of the table, where there is one
-  std::vector<HardeningRow> table = {};  ///< strains increase from above 0, stresses do not fall below `yield`
-};
-
 namespace detail {
 
 /// Plane stress on its way back to the bound: q^2 = (p / (1 + K m))^2 + 3 (s / (1 + 3 G m))^2, m = d / bound(d).
@@ -53,7 +48,7 @@ template <class T>
 struct J2Law {
   static constexpr int memory_in(TensorLayout layout) { return layout == TensorLayout::full9 ? 7 : 4; }
   static constexpr int memory = memory_in(TensorLayout::plane4);  ///< a point of a plane element
-  static constexpr bool is_made_for(Kinematics, bool /*finite_strain*/) { return true; }
+  static constexpr bool is_made_for(Kinematics, Strains) { return true; }
   template <class U, TensorLayout layout>
   using Memory = std::type_identity_t<Vec<U, memory_in(layout)>>;
 
@@ -335,10 +330,10 @@ struct J2Law {
 };
 
 template <class T>
-J2Law<T> law_of(const J2Plastic& material, Space space, bool finite_strain, const Numbers<T>& numbers) {
+J2Law<T> law_of(const J2Plastic& material, Space space, Strains strains, const Numbers<T>& numbers) {
   const LinearElasticLaw<T> elastic(numbers(material.E), numbers(material.nu), Space::plane_strain);
   return {elastic.lame, elastic.shear, hardening_of(material.yield, material.hardening, material.table, numbers), space,
-          finite_strain};
+          strains == Strains::finite};
 }
 
 }  // namespace stickslip

@@ -3,6 +3,10 @@
 
 namespace stickslip {
 
+/// How large strains may be: small, linear in the displacements, or finite.
+enum class Strains { small, finite };
+constexpr Strains strains_of(bool finite) { return finite ? Strains::finite : Strains::small; }
+
 enum class Space { plane_strain, plane_stress, axisymmetric, solid };
 
 /// How displacements become strains.

@@ -7,25 +7,12 @@
 #pragma once
 
 #include <array>
-#include <tuple>
 
-#include "core/algebra/described.hpp"
 #include "core/algebra/scalar.hpp"
+#include "core/solids/descriptions.hpp"
 #include "core/solids/tensor.hpp"
 
 namespace stickslip {
-
-struct LinearElastic {
-  static constexpr const char *key = "linear_elastic",
-                              *about = "of bars, and where strains are small of all but points",
-                              *place = "fills bars, and where strains are small all but points";
-  Number E, nu;
-
-  static constexpr auto keys() {
-    return std::tuple{Key{&LinearElastic::E, "E", "Young's modulus (force per area)", InRange{Range::positive, 1000}},
-                      Key{&LinearElastic::nu, "nu", "Poisson's ratio", InRange{Range::poisson_ratio, 0.3}}};
-  }
-};
 
 /// Lame's first constant in plane stress, where the thickness adapts.
 template <class T>
@@ -36,7 +23,7 @@ T lame_of_plane_stress(const T& lame, const T& shear) {
 template <class T>
 struct LinearElasticLaw {
   static constexpr bool is_finite = false;
-  static constexpr bool is_made_for(Kinematics, bool finite_strain) { return !finite_strain; }
+  static constexpr bool is_made_for(Kinematics, Strains strains) { return strains == Strains::small; }
 
   T lame, shear;
   Space space = Space::plane_strain;
@@ -87,8 +74,7 @@ struct LinearElasticLaw {
 };
 
 template <class T>
-LinearElasticLaw<T> law_of(const LinearElastic& material, Space space, bool /*finite_strain*/,
-                           const Numbers<T>& numbers) {
+LinearElasticLaw<T> law_of(const LinearElastic& material, Space space, Strains /*strains*/, const Numbers<T>& numbers) {
   return {numbers(material.E), numbers(material.nu), space};
 }
 

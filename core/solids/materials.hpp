@@ -1,9 +1,8 @@
-/// The list of materials: what a scene may name, and the law that each becomes in a scalar T.
+/// The list of laws: what each material that a scene may name (core/solids/descriptions.hpp) becomes in a scalar T.
 ///
-/// A material has a file of its own: its description for the scene, which says its keys (core/algebra/described.hpp)
-/// and what it is for, a verb first (place), and what makes a law of it,
+/// The law of a material has a file of its own, with what makes a law of a description,
 ///
-///   law_of(material, space, finite_strain, numbers)   where it fills a continuum
+///   law_of(material, space, strains, numbers)         where it fills a continuum
 ///   bar_of(material, elastic, numbers)                where it fills bars too: elastic is the law of bars of its E
 ///   law_of(material, numbers)                         where it holds a point
 ///
@@ -29,10 +28,14 @@
 
 namespace stickslip {
 
-using Material = std::variant<LinearElastic, NeoHookean, J2Plastic, GroundedSpring>;
-
 template <class T>
 using Law = std::variant<LinearElasticLaw<T>, NeoHookeanLaw<T>, J2Law<T>, BarLaw<T>, PlasticBarLaw<T>, SpringLaw<T>>;
+
+/// Of a body. (A class, for Slots to hold where laws are not known.)
+template <class T>
+struct BodyLaw {
+  Law<T> law;
+};
 
 /// Numbers that a law remembers at a point.
 template <class L>
@@ -41,8 +44,7 @@ constexpr int memory_of() {
   return 0;
 }
 template <class L>
-concept Remembers = memory_of<L>()
-> 0;
+concept Remembers = (memory_of<L>() > 0);
 
 namespace detail {
 
@@ -50,7 +52,7 @@ namespace detail {
 template <class L, class... Memory>
 concept ContinuumLawWith = requires(const L& law, const PlaneGradient<double>& H, const Memory&... memory) {
   { law.is_finite } -> std::convertible_to<bool>;
-  { L::is_made_for(Kinematics::plane, true) } -> std::same_as<bool>;
+  { L::is_made_for(Kinematics::plane, Strains::finite) } -> std::same_as<bool>;
   { law.with(law.numbers()) } -> std::same_as<L>;
   { law.stress(H, memory...) } -> std::same_as<PlaneGradient<double>>;
   { law.stretch_across(H, memory...) } -> std::same_as<double>;
@@ -91,7 +93,7 @@ concept TwoNodesFlow = requires(const L& law, const Mat<double, 2>& X, const Vec
 
 template <class L>
 concept ContinuumLaw = (!Remembers<L> && detail::ContinuumLawWith<L> &&
-                        (!L::is_made_for(Kinematics::plane, true) || detail::StretchHasDerivatives<L>)) ||
+                        (!L::is_made_for(Kinematics::plane, Strains::finite) || detail::StretchHasDerivatives<L>)) ||
                        (Remembers<L> && detail::ContinuumLawWith<L, Vec<double, memory_of<L>()>> && detail::Flows<L>);
 template <class L>
 concept TwoNodeLaw = (!Remembers<L> && detail::TwoNodeLawWith<L>) ||
@@ -100,7 +102,7 @@ concept TwoNodeLaw = (!Remembers<L> && detail::TwoNodeLawWith<L>) ||
 
 template <class M>
 concept FillsContinuum = requires(const M& of, const Numbers<double>& numbers) {
-  law_of<double>(of, Space::plane_strain, false, numbers);
+  law_of<double>(of, Space::plane_strain, Strains::small, numbers);
 };
 template <class M>
 concept FillsBars = requires(const M& of, const BarLaw<double>& elastic, const Numbers<double>& numbers) {
@@ -113,81 +115,9 @@ concept HoldsPoint = requires(const M& of, const Numbers<double>& numbers) {
 
 /// The law of a continuum, and of bars, of a material.
 template <FillsContinuum M>
-using LawOf = decltype(law_of<double>(std::declval<const M&>(), Space::plane_strain, false, Numbers<double>{}));
+using LawOf =
+    decltype(law_of<double>(std::declval<const M&>(), Space::plane_strain, Strains::small, Numbers<double>{}));
 template <FillsBars M>
 using BarLawOf = decltype(bar_of<double>(std::declval<const M&>(), BarLaw<double>{}, Numbers<double>{}));
-
-namespace detail {
-
-template <class M>
-constexpr bool is_whole() {
-  static_assert(FillsContinuum<M> || HoldsPoint<M>, "a material lacks its law_of");
-  if constexpr (FillsContinuum<M>) {
-    static_assert(ContinuumLaw<LawOf<M>>, "the law of a material lacks something");
-    static_assert(std::is_constructible_v<Law<double>, LawOf<M>>, "the law of a material is not in the list of laws");
-  }
-  if constexpr (FillsBars<M>) {
-    static_assert(TwoNodeLaw<BarLawOf<M>>, "the law of bars of a material lacks something");
-    static_assert(std::is_constructible_v<Law<double>, BarLawOf<M>>, "a law of bars is not in the list of laws");
-  }
-  return true;
-}
-template <class... M>
-constexpr bool are_whole_materials(const std::variant<M...>*) {
-  return (is_whole<M>() && ...);
-}
-static_assert(are_whole_materials(static_cast<const Material*>(nullptr)));
-
-}  // namespace detail
-
-/// Why a material does not go with elements of a continuum, completing "MATERIAL ..."; empty where it does.
-inline const char* fault_of(const Material& material, Kinematics kinematics, bool finite_strain) {
-  return std::visit(
-      [&]<class M>(const M&) -> const char* {
-        if constexpr (FillsContinuum<M>) {
-          using L = LawOf<M>;
-          if (L::is_made_for(kinematics, finite_strain)) return "";
-          if (!L::is_made_for(kinematics, !finite_strain)) return "is not made for this space and element";
-          return finite_strain ? "is made for small strain" : "is made for finite strain";
-        }
-        return "holds a point";
-      },
-      material);
-}
-
-/// Numbers that a point of a continuum of a material remembers, and a bar of it.
-inline int memory_of(const Material& material, TensorLayout layout) {
-  return std::visit(
-      [&]<class M>(const M&) {
-        if constexpr (FillsContinuum<M>)
-          if constexpr (Remembers<LawOf<M>>) return LawOf<M>::memory_in(layout);
-        return 0;
-      },
-      material);
-}
-inline int memory_of_bar(const Material& material) {
-  return std::visit(
-      []<class M>(const M&) {
-        if constexpr (FillsBars<M>) return memory_of<BarLawOf<M>>();
-        return 0;
-      },
-      material);
-}
-
-/// Whether bodies of a material remember how they flowed.
-inline bool flows(const Material& material) { return memory_of(material, TensorLayout::plane4) > 0; }
-
-/// Whether a continuum of a material hardly changes its volume.
-inline bool is_nearly_incompressible(const Material& material) {
-  constexpr double nearly = 0.45;
-  return std::visit(
-      []<class M>(const M& of) {
-        if constexpr (requires { of.nu; }) return of.nu.value > nearly;
-        return false;
-      },
-      material);
-}
-
-static_assert(TwoNodeLaw<SpringLaw<double>>);
 
 }  // namespace stickslip

@@ -33,22 +33,6 @@
 
 namespace stickslip {
 
-struct NeoHookean {
-  static constexpr const char *key = "neo_hookean", *about = "of all but bars and points where strains are finite",
-                              *place = "fills all but bars and points where strains are finite";
-  enum class Volumetric { quadratic, log };
-  Number E, nu;
-  Volumetric volumetric = Volumetric::quadratic;
-
-  static constexpr auto keys() {
-    return std::tuple{
-        Key{&NeoHookean::E, "E", "Young's modulus of small strains (force per area)", InRange{Range::positive, 1000}},
-        Key{&NeoHookean::nu, "nu", "Poisson's ratio of small strains", InRange{Range::poisson_ratio, 0.3}},
-        Key{&NeoHookean::volumetric, "volumetric", "energy of a change of volume: lame/2 (J - 1)^2, or lame/2 (ln J)^2",
-            std::array{"quadratic", "log"}}};
-  }
-};
-
 namespace detail {
 
 /// Plane stress of the logarithmic law: x = |ln F_22|, whose sign is given; the stress across, over the shear modulus
@@ -69,7 +53,7 @@ struct LogarithmicThickness {
 template <class T>
 struct NeoHookeanLaw {
   static constexpr bool is_finite = true;
-  static constexpr bool is_made_for(Kinematics, bool finite_strain) { return finite_strain; }
+  static constexpr bool is_made_for(Kinematics, Strains strains) { return strains == Strains::finite; }
 
   T lame, shear;
   NeoHookean::Volumetric volumetric = NeoHookean::Volumetric::quadratic;
@@ -203,7 +187,7 @@ struct NeoHookeanLaw {
 };
 
 template <class T>
-NeoHookeanLaw<T> law_of(const NeoHookean& material, Space space, bool /*finite_strain*/, const Numbers<T>& numbers) {
+NeoHookeanLaw<T> law_of(const NeoHookean& material, Space space, Strains /*strains*/, const Numbers<T>& numbers) {
   const LinearElasticLaw<T> small(numbers(material.E), numbers(material.nu), Space::plane_strain);
   return {small.lame, small.shear, material.volumetric, space};
 }

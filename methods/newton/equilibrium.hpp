@@ -39,9 +39,6 @@ struct Anchor {
   }
 };
 
-/// Whether lambda is given or an unknown.
-enum class Multipliers { given, unknown };
-
 /// Tractions as unknowns although multipliers are given. Why: at a stiff point a curvature changes the gap by many
 /// tractions over the stiffness, so the traction of an iterate must come from the linear step and not from the gap.
 /// With

@@ -3,9 +3,9 @@
 namespace stickslip {
 
 EnginePrice predict_price(const Model& model, const Method& method, const FactorSize& factor) {
-  const bool unknown = has_unknown_multipliers(method);
-  const auto kind = system_kind(model, unknown, cone_radius_of(method), Backend::automatic);
-  return predict_price(model, unknown, kind.symmetry, factor);
+  const Multipliers multipliers = multipliers_of(method);
+  const auto kind = system_kind(model, multipliers, cone_radius_of(method), Backend::automatic);
+  return predict_price(model, multipliers, kind.symmetry, factor);
 }
 
 bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine engine,

@@ -48,7 +48,7 @@ Engine<T> engine_of_full_bodies(const Model& model, const Slots<T>& slots, const
 template <class T>
 void make_engine(const Model& model, const Slots<T>& slots, const Method& method, const RunOptions& options,
                  Workspace<T>& workspace) {
-  const auto kind = system_kind(model, has_unknown_multipliers(method), cone_radius_of(method), options.backend);
+  const auto kind = system_kind(model, multipliers_of(method), cone_radius_of(method), options.backend);
   const auto engine = options.linear_algebra.engine;
   if (can_condense(model) && engine != LinearAlgebra::Engine::sparse) {
     auto bodies = workspace.condensation;

@@ -98,7 +98,7 @@ Choice VertexTie::now(const Model&, const State<double>& at) const { return {at.
 void VertexTie::set(const Model& model, const Choice& choice, State<double>& at) const {
   const int patch = choice.branch;
   const double xi = patch == first ? 1 : 0;
-  at.contact.facing[point] = {patch, xi, 0};
+  at.contact.facing[point] = {.patch = patch, .xi = xi};
   at.history.patch[point] = patch;
   const auto& of = model.points[point];
   if (of.foot >= 0) at.history.foot[of.foot] = xi - detail::foot_reference(model, of, patch);

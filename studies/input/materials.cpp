@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "core/solids/materials.hpp"
 #include "studies/input/described.hpp"
 
 namespace stickslip {
@@ -130,7 +131,7 @@ template <class M>
 bool goes_with(Filling filling, bool finite_strain) {
   if (filling == Filling::point) return HoldsPoint<M>;
   if (filling == Filling::bars) return FillsBars<M>;
-  if constexpr (FillsContinuum<M>) return LawOf<M>::is_made_for(Kinematics::plane, finite_strain);
+  if constexpr (FillsContinuum<M>) return LawOf<M>::is_made_for(Kinematics::plane, strains_of(finite_strain));
   return false;
 }
 

@@ -81,7 +81,7 @@ json kkt_json(const KktError& e) {
 
 json size_json(const CaseResult& result) {
   const auto& model = result.problem->model;
-  const bool unknown = has_unknown_multipliers(result.method);
+  const bool unknown = multipliers_of(result.method) == Multipliers::unknown;
   return {{"displacements", model.free_dofs.size()},
           {"multipliers", unknown ? model.multiplier_count : 0},
           {"nonzeros", result.nonzeros},

@@ -14,7 +14,7 @@ Matrix<double> element_stress(const Problem& problem, const State<double>& state
   Matrix<double> stress = Matrix<double>::Zero(6, count);
   int first = 0;  // column of the body's first element
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const auto& law = problem.slots.laws[b];
+    const auto& law = problem.slots.laws[b].law;
     Vector<double> volumes = Vector<double>::Zero(model.bodies[b].mesh.element_count());
     for_each_strain(problem, state, b, [&](int e, const auto& H, double volume, const double* memory) {
       const auto components = stress_of(law, H, memory);
@@ -50,7 +50,7 @@ Matrix<double> element_thickness(const Problem& problem, const State<double>& st
     std::vector<double> volumes(means.size() - first, 0);
     for_each_strain(problem, state, b, [&](int e, const auto& H, double volume, const double* memory) {
       if constexpr (std::is_same_v<decltype(H), const PlaneGradient<double>&>) {
-        const double stretch = thickness_stretch(problem.slots.laws[b], H, memory);
+        const double stretch = thickness_stretch(problem.slots.laws[b].law, H, memory);
         volumes[e] += volume;
         means[first + e] += (stretch - means[first + e]) * volume / volumes[e];
       }

@@ -119,8 +119,7 @@ std::string engine_lines(const Input& input, const Problem& problem) {
   const auto engine = input.linear_algebra.engine;
   const bool condensed = condenses(model, input.method, engine);
   FullBodies<double> bodies(model, problem.slots);
-  const SystemKind kind =
-      system_kind(model, has_unknown_multipliers(input.method), cone_radius_of(input.method), input.backend);
+  const SystemKind kind = system_kind(model, multipliers_of(input.method), cone_radius_of(input.method), input.backend);
   const auto tangent = condensed ? nullptr : make_condensed_tangent(model, problem.slots, kind, engine, bodies);
   std::string text = "linear algebra: ";
   text += tangent ? fmt::format(
@@ -161,7 +160,7 @@ std::string explain(const Input& input, const Problem& problem) {
   if (scene.arc_length)
     text += fmt::format("  along the path by arc length: the factor of load {} is found, in at most {} steps of {}\n",
                         scene.arc_length->load, scene.arc_length->max, number(path_length(model, problem.slots), 3));
-  const bool unknown = has_unknown_multipliers(input.method);
+  const bool unknown = multipliers_of(input.method) == Multipliers::unknown;
   text += "unknowns: " + count(model.free_dofs, "displacement");
   text +=
       unknown ? ", " + counted(model.multiplier_count, "multiplier") + "\n" : ", no multipliers among the unknowns\n";

@@ -43,7 +43,7 @@ struct Size {
 };
 
 SystemKind kind_of(const Input& input, const Model& model) {
-  return system_kind(model, has_unknown_multipliers(input.method), cone_radius_of(input.method), input.backend);
+  return system_kind(model, multipliers_of(input.method), cone_radius_of(input.method), input.backend);
 }
 
 Size size_of(const Input& input, const Model& model) {
@@ -51,7 +51,7 @@ Size size_of(const Input& input, const Model& model) {
   const bool condenses_some = condenses(model, input.method, input.linear_algebra.engine);
   n.condensed = condenses_some && model.effects.linear_bulk;
   n.mixed = condenses_some && !n.condensed;
-  n.unknown = has_unknown_multipliers(input.method);
+  n.unknown = multipliers_of(input.method) == Multipliers::unknown;
   n.unsymmetric = kind_of(input, model).symmetry == Symmetry::general;
   n.dofs = model.dof_count();
   n.contact_dofs = static_cast<double>(model.contact_nodes.size()) * model.dimension;
@@ -286,7 +286,7 @@ Factors sparse_factors(const Input& input, const Problem& problem, const Size& n
   Factors out;
   std::optional<MixedRows> mixed;
   if (n.mixed) mixed.emplace(model);
-  const auto lists = tangent_rows(model, n.unknown, mixed ? &*mixed : nullptr);
+  const auto lists = tangent_rows(model, multipliers_of(input.method), mixed ? &*mixed : nullptr);
   if (mixed) {
     out.bodies = {"bodies_factor", real_bytes * bodies_factor(model).entries, of_library(n.free)};
     out.schur = {"condensed", real_bytes * n.condensed_dofs * n.condensed_dofs};

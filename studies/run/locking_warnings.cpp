@@ -57,7 +57,7 @@ std::optional<Moduli> moduli_of(const Law<double>& law) {
 
 /// Whether locking is looked for in a body.
 bool is_watched_for_locking(const Problem& problem, std::size_t b) {
-  const auto moduli = moduli_of(problem.slots.laws[b]);
+  const auto moduli = moduli_of(problem.slots.laws[b].law);
   return moduli && may_lock(problem, b) && (moduli->flows || moduli->nu() >= nearly_incompressible);
 }
 
@@ -85,7 +85,7 @@ void add_locking(const CaseResult& result, std::vector<Warning>& warnings) {
   const auto& problem = *result.problem;
   for (std::size_t b = 0; b < problem.model.bodies.size(); ++b) {
     if (!is_watched_for_locking(problem, b)) continue;
-    const auto moduli = moduli_of(problem.slots.laws[b]);
+    const auto moduli = moduli_of(problem.slots.laws[b].law);
     double largest = 0;
     for (const auto& step : solved_steps(result))
       largest = larger(largest, step.bodies.empty() ? spurious_pressure(problem, step.increment->state, b)
@@ -157,7 +157,7 @@ void add_locking_warnings(const CaseResult& result, std::vector<Warning>& warnin
 }
 
 double spurious_pressure(const Problem& problem, const State<double>& state, std::size_t b) {
-  const auto& law = problem.slots.laws[b];
+  const auto& law = problem.slots.laws[b].law;
   const auto moduli = moduli_of(law);
   if (!moduli || !may_lock(problem, b)) return 0;
   const auto& mesh = problem.model.bodies[b].mesh;

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 
 #include "core/model/element_nodes.hpp"
+#include "core/solids/materials.hpp"
 #include "core/solids/mean_dilatation.hpp"
 #include "studies/run/case.hpp"
 

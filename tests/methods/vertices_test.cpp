@@ -14,7 +14,8 @@ TEST(KeptPatches, AreWrongWhereThePointFacesAnother) {
   scene.contacts[0].smoothing = Smoothing::none;
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
-  auto engine = sparse_engine(model, slots, system_kind(model, true, ConeRadius::augmented, Backend::automatic));
+  auto engine =
+      sparse_engine(model, slots, system_kind(model, Multipliers::unknown, ConeRadius::augmented, Backend::automatic));
   const RegularisationField<double> rho(model.points.size(), {1, 1});
   const auto start = initial_state<double>(model, slots);
   const ContactInput<double> input{model, slots, rho, start.history, ConeRadius::augmented, 0.1};

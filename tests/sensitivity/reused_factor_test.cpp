@@ -34,8 +34,7 @@ Outcome differentiate_last(const Scene& scene, const M& method, std::optional<do
   const auto& increments = run.trajectory.increments;
   const State<double>& previous =
       increments.size() > 1 ? increments[increments.size() - 2].state : run.trajectory.initial;
-  constexpr bool unknown = std::is_same_v<M, MonolithicAL>;
-  const auto kind = system_kind(run.model, unknown, method.cone_radius(), Backend::automatic);
+  const auto kind = system_kind(run.model, method.multipliers, method.cone_radius(), Backend::automatic);
   auto bodies = std::make_unique<FullBodies<double>>(run.model, run.slots);
   auto system = std::make_unique<CarelessSystem>(run.model, run.slots, kind, *bodies);
   Engine<double> engine(run.model, run.slots, std::move(bodies), std::move(system));

@@ -2,6 +2,7 @@
 /// schema.
 #include <gtest/gtest.h>
 
+#include "core/solids/materials.hpp"
 #include "studies/input/materials.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "tests/support/largest.hpp"
@@ -68,10 +69,10 @@ template <FillsContinuum M>
 void expect_material(const M& material, const Numbers<double>& numbers) {
   for (const bool finite : {false, true}) {
     for (const Space space : {Space::plane_strain, Space::plane_stress})
-      if (LawOf<M>::is_made_for(Kinematics::plane, finite))
-        expect_stress<TensorLayout::plane4>(law_of<double>(material, space, finite, numbers));
-    if (LawOf<M>::is_made_for(Kinematics::revolution, finite))
-      expect_stress<TensorLayout::hoop5>(law_of<double>(material, Space::axisymmetric, finite, numbers));
+      if (LawOf<M>::is_made_for(Kinematics::plane, strains_of(finite)))
+        expect_stress<TensorLayout::plane4>(law_of<double>(material, space, strains_of(finite), numbers));
+    if (LawOf<M>::is_made_for(Kinematics::revolution, strains_of(finite)))
+      expect_stress<TensorLayout::hoop5>(law_of<double>(material, Space::axisymmetric, strains_of(finite), numbers));
   }
 }
 template <class M>

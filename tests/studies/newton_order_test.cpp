@@ -55,8 +55,7 @@ struct Solved {
 std::vector<double> roundings(const Solved& s) {
   const auto& [model, slots, unused] = *s.problem;
   const auto multipliers = std::holds_alternative<MonolithicAL>(s.method) ? Multipliers::unknown : Multipliers::given;
-  auto engine = sparse_engine(
-      model, slots, system_kind(model, multipliers == Multipliers::unknown, ConeRadius::augmented, Backend::automatic));
+  auto engine = sparse_engine(model, slots, system_kind(model, multipliers, ConeRadius::augmented, Backend::automatic));
   Account account;
   const Anchor<double> none;
   std::vector<double> all;

@@ -62,7 +62,10 @@ struct EngineProblem {
     open.states.assign(states.size(), ContactState::open);
     return open.tangents();
   }
-  SystemKind kind(bool unknown) const { return system_kind(model, unknown, ConeRadius::augmented, Backend::automatic); }
+  SystemKind kind(bool unknown) const {
+    return system_kind(model, unknown ? Multipliers::unknown : Multipliers::given, ConeRadius::augmented,
+                       Backend::automatic);
+  }
   Engine<double> sparse(bool unknown) const { return sparse_engine(model, slots, kind(unknown)); }
   std::shared_ptr<Condensation<double>> condensation() const {
     return std::make_shared<Condensation<double>>(model, slots, Backend::automatic);

@@ -54,8 +54,8 @@ inline TangentErrors errors_of_tangent(const Model& model, const Slots<double>& 
     detail::scatter(model, slots, p, tangents[p], Vector<double>(tangents[p].force_l * own), forces);
     rows.segment(model.points[p].multiplier, own.size()) += tangents[p].row_l * own;
   }
-  const Vector<double> bodies =
-      tangent_times<double>(model, slots, {at.displacement, before.history.bodies, increment.time}, motion, false);
+  const Vector<double> bodies = tangent_times<double>(
+      model, slots, {at.displacement, before.history.bodies, increment.time}, motion, Taken::as_is);
 
   const auto complex_slots = make_slots<C>(model, model.scene.as<C>());
   const auto step = [&](const Vector<double>& x, const Vector<double>& direction) {

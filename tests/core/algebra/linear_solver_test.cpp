@@ -125,7 +125,8 @@ class EveryBackend : public testing::TestWithParam<Backend> {
     const MatrixXd b = right_hand_sides(a);
     EXPECT_LT(relative_error(solver.solve(b), a.partialPivLu().solve(b)), tolerance_for(a)) << solver.name();
     EXPECT_LT(solver.backward_error(), 1e-11);  // what every backend is held to without refinement
-    EXPECT_LT(relative_error(solver.solve(b, true), a.transpose().partialPivLu().solve(b)), tolerance_for(a));
+    EXPECT_LT(relative_error(solver.solve(b, Taken::transposed), a.transpose().partialPivLu().solve(b)),
+              tolerance_for(a));
     EXPECT_LT(solver.backward_error(), 1e-11);
     EXPECT_GT(solver.factor_nonzeros(), a.rows());
     const auto stored_entries = solver.factor_nonzeros() - a.rows();  // a diagonal of ones need not be stored
@@ -348,7 +349,7 @@ TEST_P(EveryBackend, CountsItsWork) {
   solver.analyse(stored.pattern, Symmetry::positive_definite);
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(solver.factorise(stored.data()));
   solver.solve(right_hand_sides(a, 5));
-  solver.solve(right_hand_sides(a, 1), true);
+  solver.solve(right_hand_sides(a, 1), Taken::transposed);
   solver.condition_estimate();
   EXPECT_EQ(solver.counters().analyses, 1);
   EXPECT_EQ(solver.counters().factorizations, 3);
@@ -493,7 +494,7 @@ TEST(LinearSolver, SolvesComplexMatricesWithoutConjugating) {
       return (m * x - b).norm() / b.norm();
     };
     EXPECT_LT(error(solver.solve(b), a), 1e-12);  // a residual: rounding, whatever the condition number
-    EXPECT_LT(error(solver.solve(b, true), a.transpose()), 1e-12);
+    EXPECT_LT(error(solver.solve(b, Taken::transposed), a.transpose()), 1e-12);
     EXPECT_LT(solver.backward_error(), 1e-12);
     const double exact = a.cwiseAbs().colwise().sum().maxCoeff<Eigen::PropagateNaN>() *
                          a.inverse().cwiseAbs().colwise().sum().maxCoeff<Eigen::PropagateNaN>();

@@ -139,7 +139,7 @@ TEST(MixedEngine, ExpandsWhatIsWantedAsItExpandsAll) {
 
 EnginePrice price_of(const Scene& scene) {
   const Model model = make_model(scene);
-  return predict_price(model, false, Symmetry::general, bodies_factor(model));
+  return predict_price(model, Multipliers::given, Symmetry::general, bodies_factor(model));
 }
 
 TEST(MixedEngine, IsChosenWhereItIsCheaper) {

@@ -20,7 +20,7 @@ using Table = std::vector<HardeningRow>;
 template <class T = double>
 J2Law<T> law(Space space, bool finite, const Table& table = {}) {
   Numbers<T> none;
-  return law_of<T>(J2Plastic{E, nu, yield, table.empty() ? hardening : 0.0, table}, space, finite, none);
+  return law_of<T>(J2Plastic{E, nu, yield, table.empty() ? hardening : 0.0, table}, space, strains_of(finite), none);
 }
 
 /// Rows that the gradients below pass.
@@ -215,8 +215,8 @@ void expect_limit_of_small_strain(Space space) {
   for (int level : {0, 1}) {
     const double share = level == 0 ? 1e-3 : 1e-4;
     Numbers<double> none;
-    auto soft = law_of<double>(J2Plastic{E, nu, yield * share, hardening}, space, true, none);
-    auto like = law_of<double>(J2Plastic{E, nu, yield * share, hardening}, space, false, none);
+    auto soft = law_of<double>(J2Plastic{E, nu, yield * share, hardening}, space, Strains::finite, none);
+    auto like = law_of<double>(J2Plastic{E, nu, yield * share, hardening}, space, Strains::small, none);
     const Mat<double, 2> H = gradient(2) * share;
     const auto a = soft.stress(in_plane(H), soft.flow(in_plane(H), Memory::Zero())).full();
     const auto b = like.stress(in_plane(H), like.flow(in_plane(H), Memory::Zero())).full();

@@ -184,7 +184,7 @@ using Table = std::vector<HardeningRow>;
 
 J2Law<double> metal(Space space, bool finite, const Table& table) {
   Numbers<double> none;
-  return law_of<double>(J2Plastic{200.0, 0.3, 1.5, table.empty() ? 9.0 : 0.0, table}, space, finite, none);
+  return law_of<double>(J2Plastic{200.0, 0.3, 1.5, table.empty() ? 9.0 : 0.0, table}, space, strains_of(finite), none);
 }
 
 const Table rows{{0.02, 1.7}, {0.1, 1.9}, {0.25, 2.2}};

@@ -38,7 +38,7 @@ NeoHookeanLaw<T> rubber(Volumetric kind) {
 template <class T = double>
 J2Law<T> metal(bool finite, const std::vector<HardeningRow>& table = {}, Space space = Space::solid) {
   Numbers<T> none;
-  return law_of<T>(J2Plastic{E, nu, 1.5, table.empty() ? 9.0 : 0.0, table}, space, finite, none);
+  return law_of<T>(J2Plastic{E, nu, 1.5, table.empty() ? 9.0 : 0.0, table}, space, strains_of(finite), none);
 }
 
 class RubberInSpace : public testing::TestWithParam<Volumetric> {};
