@@ -51,15 +51,16 @@ std::vector<std::shared_ptr<const PeerSolution>> read_solutions(const JsonNode& 
   }
   for (const JsonNode& node : list.elements()) {
     if (!node.is_object({{"name", "file"}, {"scene", "vary", "refine"}})) continue;
+    const auto called = node.find("name"), beside = node.find("file");
+    if (!called || !beside) continue;
     PeerSolution one;
     one.place = node.place();
-    const auto name = read_name(*node.find("name"), names);
-    const JsonNode beside = *node.find("file");
-    auto solution = read_beside(beside, file);
+    const auto name = read_name(*called, names);
+    auto solution = read_beside(*beside, file);
     if (!name || !solution) continue;
     one.solution = *std::move(solution);
     one.name = *name;
-    one.file = beside.value().get<std::string>();
+    one.file = beside->value().get<std::string>();
     if (const auto vary = node.find("vary"); vary && vary->is_map("values by JSON pointer of the scene"))
       for (const auto& [pointer, value] : vary->members()) one.vary[pointer] = value.value();
     if (const auto scene = node.find("scene")) one.scene = scene->text();

@@ -163,6 +163,11 @@ TEST_F(PeerSolutions, ThatCannotBeReadAreFaultsOfTheStudy) {
   entry["file"] = "scene.json";
   EXPECT_THAT(faults(study_with(json::array({entry}))), HasSubstr(R"(must have "schema": "stickslip_solution")"));
   EXPECT_THAT(faults(study_with(json::object())), HasSubstr("/solutions: is {}; must be a list"));
+  for (const std::string key : {"name", "file"}) {
+    entry = good;
+    entry.erase(key);
+    EXPECT_THAT(faults(study_with(json::array({entry}))), HasSubstr("the key \"" + key + "\" is missing"));
+  }
 }
 
 TEST_F(PeerSolutions, ThatAreNotAsTheyShouldBeAreToldWithTheirPlace) {
