@@ -120,7 +120,7 @@ void print_start_gaps(const Problem& problem) {
 void write_picture(const std::filesystem::path& directory, const Simulation& simulation, const CaseResult& result,
                    Written& written) {
   const Stopwatch time(written.seconds);
-  json picture = picture_json(result, fields_every(simulation.input.output));
+  json picture = picture_json(result, simulation.input.fields_every);
   if (picture.is_null()) return;
   picture["interface"] = interface_json(result);
   picture["film"] = film_json(result);

@@ -40,18 +40,14 @@ void read_linear_solver(const JsonNode& node, SceneReading& reading, Input& inpu
   }
 }
 
-void read_output(const JsonNode& node, OutputOptions& output) {
-  if (!node.is_object({{}, {"fields"}})) return;
-  const auto fields = node.find("fields");
-  if (!fields || fields->value() == "last") return;
-  if (fields->value() == "all") {
-    output.fields = OutputOptions::Fields::all;
-  } else if (fields->value().is_number()) {
-    output.fields = OutputOptions::Fields::every;
-    output.every = fields->count(1).value_or(1);
-  } else {
-    fields->must_be(R"("last", "all" or a whole number >= 1)");
-  }
+/// Input::fields_every.
+int read_output(const JsonNode& node) {
+  const auto fields = node.is_object({{}, {"fields"}}) ? node.find("fields") : std::nullopt;
+  if (!fields || fields->value() == "last") return 0;
+  if (fields->value() == "all") return 1;
+  if (fields->value().is_number()) return fields->count(1).value_or(1);
+  fields->must_be(R"("last", "all" or a whole number >= 1)");
+  return 0;
 }
 
 /// Notes on obstacles that no contact names.
@@ -144,7 +140,7 @@ void read_parts(const JsonNode& root, SceneReading& reading, Input& input) {
   part("responses", read_responses);
   part("objectives", read_objectives);
   if (const auto node = root.find("linear_solver")) read_linear_solver(*node, reading, input);
-  if (const auto node = root.find("output")) read_output(*node, input.output);
+  if (const auto node = root.find("output")) input.fields_every = read_output(*node);
   if (const auto node = root.find("sensitivity")) read_sensitivity(*node, reading, input);
 }
 

@@ -15,13 +15,6 @@
 
 namespace stickslip {
 
-/// Key "output": at which increments fields are written.
-struct OutputOptions {
-  enum class Fields { last, all, every };
-  Fields fields = Fields::last;
-  int every = 1;  ///< every: each n-th increment, and the last
-};
-
 /// Bytes for the states of a run that an adjoint follows: half a gigabyte, a thousand states of some 60 000
 /// displacements. A number and no share of the machine's memory, so that every machine counts the same.
 inline constexpr double megabyte = 1024 * 1024, default_state_memory = 512 * megabyte;
@@ -41,7 +34,7 @@ struct Input {
   Method method;
   LinearAlgebra linear_algebra;
   Backend backend = Backend::automatic;
-  OutputOptions output;
+  int fields_every = 0;                        ///< fields are of each n-th increment and the last; 0: of the last alone
   double state_memory = default_state_memory;  ///< RunOptions::state_memory of an adjoint
   /// The scene as it is simulated: overrides carried out, the method that runs, parameters without those dropped.
   nlohmann::json document;

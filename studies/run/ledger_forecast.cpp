@@ -347,18 +347,8 @@ LedgerRow sparse_row(const Size& n, const Factors& factors) {
           on ? not_apart : 0};
 }
 
-/// Steps whose fields are written; of several, the start too.
-double field_steps(const OutputOptions& output, double steps) {
-  switch (output.fields) {
-    case OutputOptions::Fields::last:
-      return std::min(steps, 1.0);
-    case OutputOptions::Fields::all:
-      return steps + 1;
-    case OutputOptions::Fields::every:
-      return std::ceil(steps / output.every) + 1;
-  }
-  return 0;
-}
+/// Steps whose fields are written (Input::fields_every); of several, the start too.
+double field_steps(int every, double steps) { return every == 0 ? std::min(steps, 1.0) : std::ceil(steps / every) + 1; }
 
 /// Bytes of solution.json: of a step its displacements and tractions, in some 20 digits, signs and commas each; of the
 /// mesh coordinates, and the nodes of the elements. 0 where it is left out.
@@ -375,7 +365,7 @@ LedgerRow files_row(const Input& input, const Model& model, const Size& n) {
   // each where some share nodes), of an element its nodes, place, kind, body and stresses, at the last step
   // derivatives. Names and folds take a few kilobytes a file.
   constexpr double base64 = 4.0 / 3, head = 3000, within = 2;
-  const double files = field_steps(input.output, n.steps);
+  const double files = field_steps(input.fields_every, n.steps);
   const double of_contact = model.effects.current_geometry ? 10 : 6;
   const double sets = !model.effects.contact        ? 0
                       : contacts_share_nodes(model) ? 1 + static_cast<double>(model.scene.contacts.size())
@@ -383,18 +373,18 @@ LedgerRow files_row(const Input& input, const Model& model, const Size& n) {
   double connectivity = 0;
   for (const auto& body : model.bodies) connectivity += static_cast<double>(body.mesh.connectivity.size());
   const double numbers = (6 + of_contact * sets) * model.node_count + connectivity + 10 * element_count(model);
-  const bool of_obstacles = input.output.fields != OutputOptions::Fields::last && !model.scene.obstacles.empty() &&
+  const bool of_obstacles = input.fields_every > 0 && !model.scene.obstacles.empty() &&
                             model.dimension == 2;  // some kilobytes each, beside those of the bodies
   const double bytes = files * ((of_obstacles ? 2 : 1) * head + base64 * real_bytes * numbers) +
                        base64 * real_bytes * 3 * n.parameters * model.node_count;
   const double solution = n.whole < n.states ? 0 : solution_bytes(model, connectivity, n.steps);  // (states let go)
-  return {"output",
-          true,
-          {},
-          {{"fields", bytes, within * n.path}, {"solution", solution, within * n.path}, {"picture", 0}, {"trace", 0}},
-          {{"files", (of_obstacles ? 2 : 1) * files + (solution > 0 ? 2 : 1),
-            input.output.fields == OutputOptions::Fields::last ? exactly : n.path}},
-          not_apart};
+  return {
+      "output",
+      true,
+      {},
+      {{"fields", bytes, within * n.path}, {"solution", solution, within * n.path}, {"picture", 0}, {"trace", 0}},
+      {{"files", (of_obstacles ? 2 : 1) * files + (solution > 0 ? 2 : 1), input.fields_every == 0 ? exactly : n.path}},
+      not_apart};
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ nlohmann::json write_solution(const std::filesystem::path& directory, const Simu
 nlohmann::json write_result(const std::filesystem::path& directory, const Simulation& simulation,
                             const CaseResult& result, const Written& before) {
   Written written = before;
-  const int every = fields_every(simulation.input.output);
+  const int every = simulation.input.fields_every;
   {
     const Stopwatch time(written.seconds);
     write_fields(directory, result, every);
@@ -70,7 +70,7 @@ double file_bytes(const std::filesystem::path& directory, const std::vector<std:
 
 std::vector<std::string> result_files(const Simulation& simulation, const CaseResult& result) {
   std::vector<std::string> files{"result.json"};
-  for (auto& file : field_files(result, fields_every(simulation.input.output))) files.push_back(std::move(file));
+  for (auto& file : field_files(result, simulation.input.fields_every)) files.push_back(std::move(file));
   return files;
 }
 

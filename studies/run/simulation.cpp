@@ -11,18 +11,6 @@
 
 namespace stickslip {
 
-int fields_every(const OutputOptions& output) {
-  switch (output.fields) {
-    case OutputOptions::Fields::last:
-      return 0;
-    case OutputOptions::Fields::all:
-      return 1;
-    case OutputOptions::Fields::every:
-      return output.every;
-  }
-  return 0;
-}
-
 namespace {
 
 /// What the bodies and their contact need, by sparse matrices.
@@ -117,7 +105,7 @@ void check_memory(const Problem& problem, const Input& input) {
 RunOptions run_options(const Input& input) {
   RunOptions options{input.linear_algebra, input.backend};
   if (input.scene.sensitivity_mode == SensitivityMode::adjoint) options.state_memory = input.state_memory;
-  options.output_every = fields_every(input.output);
+  options.output_every = input.fields_every;
   return options;
 }
 

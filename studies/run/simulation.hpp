@@ -37,9 +37,6 @@ double needed_bytes(const Problem& problem, const Input& input);
 /// Throws ModelError if a run would need more memory than there is. The message has the bytes and what to try.
 void check_memory(const Problem& problem, const Input& input);
 
-/// Fields are of every so many-th step and the last; 0: of the last alone.
-int fields_every(const OutputOptions& output);
-
 /// Options of the run, from the scene.
 RunOptions run_options(const Input& input);
 

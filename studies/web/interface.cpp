@@ -84,7 +84,7 @@ json picture_of(const CaseResult& result, int every) {
 json answer_of(const Simulation& simulation, int& code) {
   int done_steps = 0;
   const int steps = static_cast<int>(simulation.problem->model.most_steps());
-  const int every = fields_every(simulation.input.output);
+  const int every = simulation.input.fields_every;
   const auto result = simulate(simulation, [&] {
     ++done_steps;
     if (session.on_step) session.on_step(done_steps, steps);
@@ -95,12 +95,6 @@ json answer_of(const Simulation& simulation, int& code) {
                  {"picture", picture_of(result, every)}};
   code = is_converged(result.status()) ? done : not_solved;
   return answer;
-}
-
-/// Fields of every so many-th step; 0: of the last alone.
-OutputOptions fields_of(int every) {
-  if (every == 0) return {};
-  return {OutputOptions::Fields::every, every};
 }
 
 /// Answers a request; `code`: what the program would return to the shell.
@@ -117,7 +111,7 @@ json answer_to(const json& request, int& code) {
     answer["document"] = simulation->input.document;
     if (request.value("explain", false)) answer["explain"] = explain(simulation->input, *simulation->problem);
     if (request.value("solve", true)) {
-      simulation->input.output = fields_of(request.value("every", 0));
+      simulation->input.fields_every = request.value("every", 0);
       answer.update(answer_of(*simulation, code));
     }
   } else {

@@ -120,7 +120,7 @@ TEST(SceneReader, ReadsABlockOnAFloor) {
   const auto& method = std::get<MonolithicAL>(input.method);
   EXPECT_EQ(method.scale.kind, Regularisation::Kind::relative);
   EXPECT_EQ(method.scale.value.value, 2);
-  EXPECT_EQ(input.output.fields, OutputOptions::Fields::last);
+  EXPECT_EQ(input.fields_every, 0);
 }
 
 TEST(SceneReader, MakesAContactOfEachPairOfBodies) {
@@ -176,7 +176,7 @@ TEST(SceneReader, ReadsLumpedBodies) {
   EXPECT_EQ(scene.legs[1].steps, 5);
   EXPECT_EQ(std::get<Penalty>(input.method).stiffness.kind, Regularisation::Kind::absolute);
   EXPECT_EQ(std::get<Penalty>(input.method).stiffness.value.value, 50);
-  EXPECT_EQ(input.output.fields, OutputOptions::Fields::all);
+  EXPECT_EQ(input.fields_every, 1);
 }
 
 TEST(SceneReader, GivesEveryPhysicalNumberASlotNamedByItsPointer) {

@@ -249,9 +249,7 @@ json outcome(const json& scene) {
   const auto simulation = document ? prepare(*document, {}, std::nullopt, diagnostics) : std::nullopt;
   if (!simulation) return {{"faults", diagnostics.text()}};
   const json result = result_json(simulate(*simulation), "");
-  return {{"method", result.at("method")},
-          {"steps", result.at("steps")},
-          {"fields", {simulation->input.output.fields, simulation->input.output.every}}};
+  return {{"method", result.at("method")}, {"steps", result.at("steps")}, {"fields", simulation->input.fields_every}};
 }
 
 TEST(Schema, NamesTheDefaultsOfTheReader) {
