@@ -158,10 +158,7 @@ inline void read_key(const KeyAt& at, bool& to, const Flag&) {
 }
 template <class E, std::size_t n>
 void read_key(const KeyAt& at, E& to, const std::array<const char*, n>& words) {
-  const auto given = at.find();
-  const auto word = given ? given->choice({words.begin(), words.end()}) : std::nullopt;
-  for (std::size_t i = 0; i < n; ++i)
-    if (word == words[i]) to = static_cast<E>(i);
+  if (const auto given = at.find()) given->word(to, words);
 }
 
 template <class N>

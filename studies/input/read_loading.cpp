@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <map>
 #include <tuple>
 
@@ -114,14 +115,11 @@ bool varies_in_time(const JsonNode& amount, Load::Kind kind, const SceneReading&
 }
 
 void read_load(const JsonNode& node, SceneReading& reading) {
-  const std::map<std::string, Load::Kind> kinds{{"traction", Load::Kind::traction},
-                                                {"pressure", Load::Kind::pressure},
-                                                {"force", Load::Kind::force},
-                                                {"body_force", Load::Kind::body_force}};
-  const auto kind = node.kind({"traction", "pressure", "force", "body_force"}, {}, {"on", "history"});
+  constexpr std::array kinds{"traction", "pressure", "force", "body_force"};  // in the order of Load::Kind
+  const auto kind = node.kind({kinds.begin(), kinds.end()}, {}, {"on", "history"});
   if (!kind) return;
   Load load;
-  load.kind = kinds.at(kind->first);
+  load.kind = static_cast<Load::Kind>(std::find(kinds.begin(), kinds.end(), kind->first) - kinds.begin());
   if (varies_in_time(kind->second, load.kind, reading))
     load.vector.clear();
   else if (load.kind == Load::Kind::pressure)

@@ -111,8 +111,7 @@ void read_response(const std::string& name, const JsonNode& outer, SceneReading&
   if (component && kind.component != ResponseKind::Component::none)
     read_component(node, *component, kind, response, reading);
   if (take && kind.sampled) {
-    const auto way = take->choice({"mean", "max", "min"}).value_or("mean");
-    response.take = way == "max" ? Response::Take::max : way == "min" ? Response::Take::min : Response::Take::mean;
+    take->word(response.take, std::array{"mean", "max", "min"});
     if (at) take->error_at_key(R"("take" has no meaning beside "at", which is a single point)");
   }
   if (at && kind.sampled) response.at = read_place(*at, reading);

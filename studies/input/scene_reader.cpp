@@ -10,16 +10,12 @@
 namespace stickslip {
 namespace {
 
-void read_space(const JsonNode& root, SceneReading& reading) {
-  const auto space = root.find("space");
-  const auto name = space ? space->choice({"plane_strain", "plane_stress", "axisymmetric", "solid"}) : std::nullopt;
-  if (name == "plane_stress") reading.scene.space = Space::plane_stress;
-  if (name == "axisymmetric") reading.scene.space = Space::axisymmetric;
-  if (name == "solid") reading.scene.space = Space::solid;
+void read_space(const JsonNode& node, SceneReading& reading) {
+  node.word(reading.scene.space, std::array{"plane_strain", "plane_stress", "axisymmetric", "solid"});
 }
 
 void read_strain(const JsonNode& node, SceneReading& reading) {
-  reading.scene.finite_strain = node.choice({"small", "finite"}) == "finite";
+  node.word(reading.scene.finite_strain, std::array{"small", "finite"});
 }
 
 void read_linear_solver(const JsonNode& node, SceneReading& reading, Input& input) {
@@ -128,7 +124,7 @@ void read_parts(const JsonNode& root, SceneReading& reading, Input& input) {
   };
   if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) reading.scene.title = title->text().value_or("");
-  read_space(root, reading);
+  part("space", read_space);
   part("strain", read_strain);
   part("bodies", read_bodies);
   part("obstacles", read_obstacles);

@@ -2,6 +2,7 @@
 /// allowed, and returns nothing.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -72,6 +73,13 @@ class JsonNode {
   std::optional<std::string> text() const;
   std::optional<std::string> choice(const std::vector<std::string>& allowed,
                                     const std::vector<std::string>& later = {}) const;
+  /// The value of an enumeration that one of its words, in its order, stands for; of another text `to` stays.
+  template <class E, std::size_t n>
+  void word(E& to, const std::array<const char*, n>& words) const {
+    const auto given = choice({words.begin(), words.end()});
+    for (std::size_t i = 0; i < n; ++i)
+      if (given == words[i]) to = static_cast<E>(i);
+  }
   /// The elements of an array of this size (`what` completes "must be ...").
   std::optional<std::vector<JsonNode>> array(std::size_t size, const std::string& what) const;
 
