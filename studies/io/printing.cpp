@@ -193,4 +193,11 @@ std::string csv_text(std::string_view text) {
   return '"' + replaced(cell, '"', "\"\"") + '"';
 }
 
+std::string escape(std::string_view text) {
+  std::string out = replaced(printable_lines(text), '&', "&amp;");
+  for (const auto& [character, entity] : {std::pair{'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}})
+    out = replaced(out, character, entity);
+  return out;
+}
+
 }  // namespace stickslip

@@ -46,4 +46,7 @@ std::string shell_word(std::string_view word);
 /// but ends of lines and tabs are escaped.
 std::string csv_text(std::string_view text);
 
+/// printable_lines() with & < > " ' replaced by entities: safe in XML and HTML, as content and as an attribute.
+std::string escape(std::string_view text);
+
 }  // namespace stickslip

@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "studies/io/printing.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -74,30 +76,6 @@ std::string base64(std::span<const unsigned char> bytes) {
   return text;
 }
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        // XML 1.0 has no way to write the other control characters.
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return out;
-}
-
 template <class T>
 constexpr std::string_view type_name = "";
 template <>
@@ -128,7 +106,7 @@ Matrix<double> padded(const Matrix<double>& values) {
 
 std::string named_array(const std::string& name, const Matrix<double>& given) {
   const Matrix<double> values = padded(given);
-  std::string attributes = fmt::format("Name=\"{}\" NumberOfComponents=\"{}\"", escaped(name), values.rows());
+  std::string attributes = fmt::format("Name=\"{}\" NumberOfComponents=\"{}\"", escape(name), values.rows());
   constexpr std::array<const char*, 6> of_tensor = {"xx", "yy", "zz", "xy", "yz", "xz"};
   for (std::size_t i = 0; values.rows() == 6 && i < of_tensor.size(); ++i)
     attributes += fmt::format(" ComponentName{}=\"{}\"", i, of_tensor[i]);
@@ -219,7 +197,7 @@ std::string pvd_text(const std::vector<PvdEntry>& entries) {
   for (const PvdEntry& entry : entries) {
     // fmt writes the shortest text that reads back as the same double.
     out += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"{}\" file=\"{}\"/>\n", entry.time, entry.part,
-                       escaped(entry.file));
+                       escape(entry.file));
   }
   return out + "</Collection>\n</VTKFile>\n";
 }

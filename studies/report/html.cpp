@@ -8,8 +8,6 @@
 #include <cstdlib>
 #include <regex>
 
-#include "studies/io/printing.hpp"
-
 namespace stickslip::report {
 
 namespace {
@@ -39,31 +37,6 @@ bool holds_numbers(const Table& table, std::size_t column) {
 }
 
 }  // namespace
-
-std::string escape(std::string_view text) {
-  std::string out;
-  out.reserve(text.size());
-  for (const char c : printable_lines(text)) switch (c) {  // XML has no control characters, and HTML shows none
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
-}
 
 std::string escape_sentence(std::string_view text) {
   static const std::regex small(R"((\d[\d.]*e-)0*(\d+))");

@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "studies/io/numerals.hpp"
+#include "studies/io/printing.hpp"
 
 namespace stickslip::report {
-
-/// `text` with & < > " ' replaced by entities: safe as element content and as an attribute value.
-std::string escape(std::string_view text);
 
 /// escape(), with numbers such as 2e-4 kept on one line, together with units such as "0.5 s", and without the noughts
 /// of 2e-04.
