@@ -90,6 +90,16 @@ void add_guides(json& rows) {
   }
 }
 
+/// The rows of a panel over the option's value; a point says its `told`.
+Chart panel_over_knob(const std::string& panel, const std::vector<std::string>& knobs, const char* field,
+                      const std::string& title, const char* told) {
+  return {.title = panel,
+          .x = {"option_value", knob_title(knobs), Spacing::logarithmic},
+          .y = {field, title, Spacing::logarithmic},
+          .tooltip = {{"label", "method"}, {"option_value", "value of the option"}, {told, told}, {"status", "status"}},
+          .only = panel};
+}
+
 }  // namespace
 
 std::vector<std::vector<std::string>> knob_groups(const Study& study) {
@@ -142,15 +152,8 @@ std::optional<Figure> error_against_knob(const Study& study, const std::vector<s
     const bool noise = !tells_apart(study, derivative ? Of::sensitivities : Of::responses) &&
                        tells_apart(study, derivative ? Of::responses : Of::sensitivities);
     const char* const error = derivative ? "relative error of the sensitivity" : "relative error of the response";
-    figure.charts.push_back({.title = panel,
-                             .x = {"option_value", knob_title(knobs), Spacing::logarithmic},
-                             .y = {"shown", error, Spacing::logarithmic},
-                             .tooltip = {{"label", "method"},
-                                         {"option_value", "value of the option"},
-                                         {"error", "error"},
-                                         {"status", "status"}},
-                             .only = panel,
-                             .folded = noise});
+    figure.charts.push_back(panel_over_knob(panel, knobs, "shown", error, "error"));
+    figure.charts.back().folded = noise;
     offer(figure, derivative ? "Sensitivity" : "Response", "quantity", "", panel);
   }
   offer(figure, "Scene", "scene", study.main_variant);
@@ -185,14 +188,7 @@ std::optional<Figure> iterations_against_knob(const Study& study, const std::vec
       return r["panel"] == panel && !r.value("unmarked", false);
     };
     if (std::none_of(figure.rows.begin(), figure.rows.end(), along_the_knob)) continue;
-    figure.charts.push_back({.title = panel,
-                             .x = {"option_value", knob_title(knobs), Spacing::logarithmic},
-                             .y = {"count", panel, Spacing::logarithmic},
-                             .tooltip = {{"label", "method"},
-                                         {"option_value", "value of the option"},
-                                         {"count", "count"},
-                                         {"status", "status"}},
-                             .only = panel});
+    figure.charts.push_back(panel_over_knob(panel, knobs, "count", panel, "count"));
   }
   if (figure.charts.empty()) return std::nullopt;
   offer(figure, "Scene", "scene", study.main_variant);

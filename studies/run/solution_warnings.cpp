@@ -81,29 +81,23 @@ void add_undetermined_contacts(const CaseResult& result, std::vector<Warning>& w
   const auto& contacts = result.problem->model.scene.contacts;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const std::string& name = contacts[c].name;
-    const std::size_t steps = solved_steps(result).size();
-    if (const long n = steps_with(result, c, &StepResult::undetermined); n > 0)
-      warnings.push_back(
-          {WarningCode::non_unique, name, 0,
-           "take friction off one of the contacts of a node, or use fewer slave nodes on a facet of the master",
-           fmt::format("{}: in {} of {} steps the forces of its points are not determined: their constraints repeat "
-                       "one another, so that other forces balance the same loads; methods, scales and steps may settle "
-                       "on different ones",
-                       name, n, steps)});
-    if (const long n = steps_with(result, c, &StepResult::at_vertex); n > 0)
-      warnings.push_back(
-          {WarningCode::non_unique, name, 1,
-           R"(smooth the master, integrate over segments ("discretization": "segment"), or shift a mesh a little)",
-           fmt::format("{}: in {} of {} steps a point begins or ends on a vertex of the master's facets: each of "
-                       "the two facets may lead to a solution of its own, and rounding decides between them",
-                       name, n, steps)});
-    if (const long n = steps_with(result, c, &StepResult::at_end); n > 0)
-      warnings.push_back(
-          {WarningCode::non_unique, name, 1,
-           R"(integrate over segments ("discretization": "segment"), take the other side as the slave, or smaller steps)",
-           fmt::format("{}: in {} of {} steps a node that presses comes to an end of its master: friction may hold it "
-                       "there, or let it go, and methods may settle on different ones",
-                       name, n, steps)});
+    const auto warn = [&](std::vector<char> StepResult::*marks, double value, const char* remedy, const char* what) {
+      if (const long n = steps_with(result, c, marks); n > 0)
+        warnings.push_back({WarningCode::non_unique, name, value, remedy,
+                            fmt::format("{}: in {} of {} steps {}", name, n, solved_steps(result).size(), what)});
+    };
+    warn(&StepResult::undetermined, 0,
+         "take friction off one of the contacts of a node, or use fewer slave nodes on a facet of the master",
+         "the forces of its points are not determined: their constraints repeat one another, so that other forces "
+         "balance the same loads; methods, scales and steps may settle on different ones");
+    warn(&StepResult::at_vertex, 1,
+         R"(smooth the master, integrate over segments ("discretization": "segment"), or shift a mesh a little)",
+         "a point begins or ends on a vertex of the master's facets: each of the two facets may lead to a solution of "
+         "its own, and rounding decides between them");
+    warn(&StepResult::at_end, 1,
+         R"(integrate over segments ("discretization": "segment"), take the other side as the slave, or smaller steps)",
+         "a node that presses comes to an end of its master: friction may hold it there, or let it go, and methods may "
+         "settle on different ones");
   }
 }
 
