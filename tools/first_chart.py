@@ -9,28 +9,23 @@ nothing is written: exit code 1 if these points are not what the study gives now
 """
 import json
 import math
-import pathlib
 import re
 import sys
 import tempfile
 
-from measured_numbers import Program, worst
+from measured_numbers import ROOT, Program, worst
 
-FIGURES = pathlib.Path(__file__).resolve().parent.parent / "docs" / "figures"
+FIGURES = ROOT / "docs" / "figures"
 RATIO = 1 / 30  # cost of a back-solve over that of a factorisation: three runs of this study measured 1/30 to 1/33
-CURVES = {  # label of the rows without the knob's value: (colour, marker, dash)
-    "penalty stiffness=": ("penalty", "circle", ""),
-    "uzawa_al scale=1 tolerance=": ("uzawa", "square", "6,3"),
-    "uzawa_al scale=10 tolerance=": ("uzawa", "diamond", "3,3"),
-    "uzawa_al scale=100 tolerance=": ("uzawa", "triangle", ""),
-    "monolithic_al scale=": ("monolithic", "triangle_up", ""),
+CURVES = {  # label of the rows without the knob's value: (marker, dash)
+    "penalty stiffness=": ("circle", ""),
+    "uzawa_al scale=1 tolerance=": ("square", "6,3"),
+    "uzawa_al scale=10 tolerance=": ("diamond", "3,3"),
+    "uzawa_al scale=100 tolerance=": ("triangle", ""),
+    "monolithic_al scale=": ("triangle_up", ""),
 }
-THEMES = {
-    "light": {"ink": "#1b1d21", "soft": "#59606a", "line": "#d5d8dd", "paper": "#ffffff",
-              "penalty": "#c04f00", "uzawa": "#0072b2", "monolithic": "#00805c"},
-    "dark": {"ink": "#e6e8eb", "soft": "#a3a9b3", "line": "#3a3f47", "paper": "#0d1117",
-             "penalty": "#ff9d52", "uzawa": "#6cb6ff", "monolithic": "#4fd1a5"},
-}
+COLOURS = re.findall(r":root \{(.*?)\}", (ROOT / "studies" / "web" / "page.css").read_text(), re.DOTALL)
+THEMES = {theme: dict(re.findall(r"--(\w+): (#\w+);", colours)) for theme, colours in zip(("light", "dark"), COLOURS)}
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 830, 250, 76, 12, 6, 40
 X, Y = (19.5, 75.0), (1e-14, 10.0)  # ranges of work and of the error
 
@@ -122,24 +117,24 @@ def drawing(data, theme):
     out.append(f'<path d="M{LEFT} {mesh:.1f}H{WIDTH - RIGHT}" stroke="{c["soft"]}" stroke-dasharray="2,3"/>')
     out.append(text(WIDTH - RIGHT - 4, mesh - 6, f'the mesh: {100 * data["mesh"]:.1f} %', c["soft"], "end"))
     for curve, points in data["curves"].items():
-        name, shape, dash = CURVES[curve]
+        (shape, dash), colour = CURVES[curve], c[curve.split()[0]]
         places = [(x_of(work), y_of(error)) for _, work, error, _ in points]
         line = "L".join(f"{x:.1f} {y:.1f}" for x, y in places)
-        out.append(f'<path d="M{line}" fill="none" stroke="{c[name]}" stroke-width="1.8"' +
+        out.append(f'<path d="M{line}" fill="none" stroke="{colour}" stroke-width="1.8"' +
                    (f' stroke-dasharray="{dash}"' if dash else "") + "/>")
-        out += [marker(shape if point[3] else "cross", x, y, c[name], c["paper"])
+        out += [marker(shape if point[3] else "cross", x, y, colour, c["paper"])
                 for (x, y), point in zip(places, points)]
     label = {curve: [(x_of(work), y_of(error)) for _, work, error, _ in points] for curve, points in data["curves"].items()}
     penalty, bold = label["penalty stiffness="], ' font-weight="bold"'
     out.append(text(penalty[0][0] + 12, penalty[0][1] + 5, "Penalty", c["penalty"], more=bold))
-    out.append(text(penalty[0][0] - 10, penalty[0][1] + 5, "stiffness 1", c["penalty"], "end", 12))
+    out.append(text(penalty[0][0] - 10, penalty[0][1] + 5, "stiffness 1", c["ink"], "end", 12))
     least = max(penalty, key=lambda place: place[1])
-    out.append(text(least[0] - 8, least[1] + 16, "1e6, then rounding grows", c["penalty"], "end", 12))
+    out.append(text(least[0] - 8, least[1] + 16, "1e6, then rounding grows", c["ink"], "end", 12))
     for scale, anchor, dx, dy in ((1, "middle", 0, 20), (10, "start", 10, 4), (100, "middle", 0, 20)):
         x, y = max(label[f"uzawa_al scale={scale} tolerance="], key=lambda place: place[1])
-        out.append(text(x + dx, y + dy, f"Uzawa, scale {scale}", c["uzawa"], anchor, more=bold))
-    out.append(text(x_of(20) + 4, y_of(1e-10), "Monolithic,", c["monolithic"], more=bold))
-    out.append(text(x_of(20) + 4, y_of(1e-10) + 16, "scales 1e-3 to 1e3", c["monolithic"], size=12))
+        out.append(text(x + dx, y + dy, f"Uzawa, scale {scale}", c["uzawa_al"], anchor, more=bold))
+    out.append(text(x_of(20) + 4, y_of(1e-10), "Monolithic,", c["monolithic_al"], more=bold))
+    out.append(text(x_of(20) + 4, y_of(1e-10) + 16, "scales 1e-3 to 1e3", c["ink"], size=12))
     out.append(text(WIDTH - RIGHT - 4, HEIGHT - BOTTOM - 8, "lower left is better", c["soft"], "end", 12))
     return "\n".join([*out, "</svg>\n"])
 
