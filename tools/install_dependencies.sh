@@ -11,7 +11,8 @@ packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libopenblas0-se
 case "${1:-}" in
   "") ;;
   test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev python3-jsonschema dpkg-dev file
-    librsvg2-bin fonts-liberation poppler-utils python3-numpy python3-scipy pybind11-dev python3-dev python3-nlopt) ;;
+    librsvg2-bin fonts-liberation poppler-utils chromium python3-numpy python3-scipy pybind11-dev python3-dev
+    python3-nlopt) ;;
   python) packages+=(pybind11-dev python3-dev python3-pip python3-setuptools python3-wheel python3-venv python3-numpy
     python3-pandas python3-matplotlib python3-nlopt jupyter-nbconvert python3-ipykernel) ;;
   web) packages=(cmake ninja-build libeigen3-dev nlohmann-json3-dev libfmt-dev emscripten) ;;
