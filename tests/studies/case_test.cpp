@@ -52,7 +52,7 @@ TEST(Case, GivesBothSidesOfALargestValueThatTwoNodesShare) {
 
 TEST(Case, GivesBothSidesOfAFlowThatIsAboutToBegin) {
   // seven steps to 0.035: at the third the bar is at its yield stress, to the last bits
-  const std::filesystem::path file = STICKSLIP_SOURCE_DIR "/studies/scenes/plastic_bar.json";
+  const std::filesystem::path file = cases::shipped / "plastic_bar.json";
   json scene = cases::load(file);
   scene["time"] = {{"legs", {{1, 7}}}};
   scene["supports"][0]["move"]["x"] = {{0, 0}, {1, 0.035}};
@@ -72,7 +72,7 @@ TEST(Case, GivesBothSidesOfAFlowThatIsAboutToBegin) {
 
 TEST(Case, GivesBothSidesOfAFlowThatEndsAtACornerOfItsTable) {
   // seven steps to 0.035, a strain of 0.03: 0.02 is reached at the fifth, where the stress is 12 to the last bits
-  const std::filesystem::path file = STICKSLIP_SOURCE_DIR "/studies/scenes/plastic_bar.json";
+  const std::filesystem::path file = cases::shipped / "plastic_bar.json";
   json scene = cases::load(file);
   auto& metal = scene["bodies"]["bar"]["material"]["j2_plastic"];
   metal["hardening"] = {{0, metal["yield"]}, {0.02 - 12 / metal["E"].get<double>(), 12}, {1, 20}};
@@ -157,7 +157,7 @@ bool has_null(const json& value) {
 }
 
 TEST(Case, AForceWhoseSquareOverflowsLeavesNumbersInWhatConverged) {
-  auto tractrix = cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/tractrix.json");
+  auto tractrix = cases::load(cases::shipped / "tractrix.json");
   for (const double force : {-1e100, -1e150, -1e160, -1e200, -1e300, -1.7e308})
     for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) {
       for (auto& load : tractrix["loads"])

@@ -40,4 +40,18 @@ std::vector<nlohmann::json> scales_of(const nlohmann::json& scene) {
   return {1e-2, "auto", 1e2};
 }
 
+nlohmann::json block_on_a_slab(int cells, double soft) {
+  const auto body = [](double modulus, const nlohmann::json& min, const nlohmann::json& max, int across) {
+    return nlohmann::json{{"mesh", {{"box", {{"min", min}, {"max", max}, {"cells", {across, 1}}}}}},
+                          {"material", {{"linear_elastic", {{"E", modulus}, {"nu", 0.3}}}}}};
+  };
+  return {{"bodies", {{"block", body(1000, {0.5, 1}, {1.5, 1.5}, cells)}, {"slab", body(soft, {0, 0}, {1.5, 1}, 1)}}},
+          {"contacts", {{"t", {{"slave", "block.bottom"}, {"master", "slab.top"}, {"friction", 0.3}}}}},
+          {"supports",
+           {{{"on", "slab.bottom"}, {"move", {{"x", 0}, {"y", 0}}}},
+            {{"on", "block.top"}, {"move", {{"x", {{0, 0}, {1, 1e-6}}}, {"y", {{0, 0}, {1, -0.02}}}}}}}},
+          {"time", {{"end", 1}, {"steps", 1}}},
+          {"responses", {{"Fx", {{"reaction", {{"on", "block.top"}, {"component", "x"}}}}}}}};
+}
+
 }  // namespace stickslip::cases

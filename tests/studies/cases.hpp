@@ -9,6 +9,9 @@
 
 namespace stickslip::cases {
 
+/// Folder of the scenes that come with the program.
+inline const std::filesystem::path shipped = STICKSLIP_SOURCE_DIR "/studies/scenes";
+
 /// What a scene file says, comments dropped.
 nlohmann::json load(const std::filesystem::path& file);
 
@@ -21,5 +24,8 @@ CaseResult run(nlohmann::json document, const nlohmann::json& method, const std:
 /// Scales of the monolithic method that all come to the one solution of a scene. A large one comes, where points slide
 /// along facets at finite strain, to a vertex at which neither facet has an equilibrium, and fails.
 std::vector<nlohmann::json> scales_of(const nlohmann::json& scene);
+
+/// A block of `cells` cells in the width of its sole, driven on to a slab of one cell, whose modulus is `soft`.
+nlohmann::json block_on_a_slab(int cells, double soft);
 
 }  // namespace stickslip::cases

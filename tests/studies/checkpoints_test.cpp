@@ -16,11 +16,9 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const fs::path scene_folder = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
-
 /// A shipped scene with its first response, over all steps, as objective; `megabytes`: of its states.
 json long_scene(const std::string& name, double megabytes) {
-  json document = cases::load(scene_folder / (name + ".json"));
+  json document = cases::load(cases::shipped / (name + ".json"));
   document.erase("objectives");
   document["objectives"]["J"] = {{"of", document["responses"].begin().key()}, {"sum", true}};
   document["sensitivity"] = {{"mode", "adjoint"}, {"memory", megabytes}};
@@ -33,7 +31,7 @@ struct Done {
   Simulation simulation;
   CaseResult result;
   explicit Done(const json& document, const std::string& scene)
-      : simulation{cases::read(document, scene_folder / (scene + ".json")), nullptr} {
+      : simulation{cases::read(document, cases::shipped / (scene + ".json")), nullptr} {
     simulation.problem = std::make_shared<const Problem>(simulation.input.scene);
     result = simulate(simulation);
   }

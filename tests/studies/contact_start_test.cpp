@@ -207,7 +207,7 @@ TEST(StartsOverlapping, IsNotWhatAnOffsetAsksForNorRounding) {
 }
 
 TEST(StartsOverlapping, IsToldOfNoShippedScene) {
-  for (const auto& file : std::filesystem::directory_iterator(STICKSLIP_SOURCE_DIR "/studies/scenes")) {
+  for (const auto& file : std::filesystem::directory_iterator(cases::shipped)) {
     const std::string name = file.path().filename();
     if (!name.ends_with(".json") || name.ends_with(".study.json")) continue;
     EXPECT_TRUE(overlaps_at_start(Problem(cases::read(cases::load(file.path()), file.path()).scene)).empty()) << name;

@@ -50,7 +50,7 @@ TEST(ATypoInABody, IsAllThatIsSaidOfTheContactsBetweenBodies) {
 
 /// The page comes with what is kept: the last step always is.
 TEST(APictureOfARunThatLetStatesGo, HasThePathsOfThoseThatAreKept) {
-  json scene = cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/slider.json");
+  json scene = cases::load(cases::shipped / "slider.json");
   scene["objectives"]["J"] = {{"of", "u"}, {"sum", true}};
   const auto run_with = [&](double megabytes) {
     scene["sensitivity"] = {{"mode", "adjoint"}, {"memory", megabytes}};

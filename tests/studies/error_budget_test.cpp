@@ -11,6 +11,7 @@
 
 #include "studies/sweep/budget_runs.hpp"
 #include "studies/sweep/study_cell.hpp"
+#include "tests/studies/cases.hpp"
 #include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip {
@@ -113,8 +114,7 @@ class ErrorBudget : public InOwnFolder {
  protected:
   /// The rows of a study; a fault fails the test. `scene` is one of the shipped ones, in which `change` may be made.
   std::vector<json> rows(const std::string& scene, json study, const json& change = json::object()) {
-    const auto scenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
-    json document = json::parse(std::ifstream(scenes / scene), nullptr, true, true);
+    json document = cases::load(cases::shipped / scene);
     document.merge_patch(change);
     std::ofstream(folder_ / "scene.json") << document.dump();
     study["scene"] = "scene.json";

@@ -59,7 +59,7 @@ void expect_solution(const CaseResult& result) {
 class Exported : public testing::TestWithParam<std::string> {};
 
 TEST_P(Exported, SystemHasTheSolutionThatTheRunFound) {
-  const fs::path file = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes" / (GetParam() + ".json");
+  const fs::path file = cases::shipped / (GetParam() + ".json");
   expect_solution(cases::run(cases::load(file), {{"monolithic_al", nlohmann::json::object()}}, file));
 }
 

@@ -18,8 +18,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const fs::path shipped_folder = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
-
 /// A scene by one method and engine, before and after it ran.
 struct Book {
   Ledger foretold, kept;
@@ -29,14 +27,14 @@ struct Book {
 Book book_of(json document, const json& method, const std::string& engine, const std::string& name) {
   document["method"] = method;
   document["linear_solver"]["engine"] = engine;
-  const Simulation simulation{cases::read(document, shipped_folder / (name + ".json")), nullptr};
+  const Simulation simulation{cases::read(document, cases::shipped / (name + ".json")), nullptr};
   const auto problem = std::make_shared<const Problem>(simulation.input.scene);
   Book book{forecast(simulation.input, *problem), {}, simulate({simulation.input, problem})};
   book.kept = ledger(book.result);
   return book;
 }
 
-json scene(const std::string& name) { return cases::load(shipped_folder / (name + ".json")); }
+json scene(const std::string& name) { return cases::load(cases::shipped / (name + ".json")); }
 
 const json penalty = {{"penalty", json::object()}}, uzawa = {{"uzawa_al", json::object()}},
            truncated = {{"uzawa_al", {{"sensitivity", "truncated"}}}}, monolithic = {{"monolithic_al", json::object()}};
@@ -281,7 +279,7 @@ TEST(Ledger, ExplainSaysWhatIsCondensedOfAMixedScene) {
     json document = punch_on_metal();
     document["method"] = penalty;
     document["linear_solver"]["engine"] = engine;
-    const Input input = cases::read(document, shipped_folder / "punch_on_metal.json");
+    const Input input = cases::read(document, cases::shipped / "punch_on_metal.json");
     return explain(input, Problem(input.scene));
   };
   using testing::HasSubstr;
@@ -297,7 +295,7 @@ TEST(Ledger, ExplainSaysWhatIsCondensedOfAMixedScene) {
 
 TEST(Ledger, CountsWhatIsWritten) {
   Diagnostics diagnostics;
-  const auto simulation = prepare((shipped_folder / "belt.json").string(), {}, std::nullopt, diagnostics);
+  const auto simulation = prepare((cases::shipped / "belt.json").string(), {}, std::nullopt, diagnostics);
   ASSERT_TRUE(simulation) << diagnostics.text();
   const TemporaryFolder own;
   const fs::path& directory = own.path;

@@ -7,12 +7,10 @@ import json
 import math
 import pathlib
 import re
-import shutil
 import sys
-import tempfile
 
-from page_test import BROWSERS, SKIPPED, Browser, check
-from play_test import METHODS, WAIT, number, visit
+from page_test import check
+from play_test import METHODS, WAIT, number, opened, visit
 
 FOUND = WAIT + """
   const waiting = async (holds) => { while (!holds()) await pause(50); };
@@ -296,18 +294,11 @@ def check_lesson(browser, lesson, words):
 
 def main():
     source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    page, chromium = folder / "stickslip.html", next(filter(None, map(shutil.which, BROWSERS)), None)
-    if not page.exists() or not chromium:
-        print("skipped: there is no page here (./play.sh), or no Chromium (Debian: apt install chromium)")
-        sys.exit(SKIPPED)
     words = json.loads((source / "studies/web/words.en.json").read_text())
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        browser = Browser(chromium, pathlib.Path(profile), page.as_uri())
-        browser.ask("Network.enable")
+    with opened(folder) as (browser, _):
         for lesson in json.loads((source / "studies/web/lessons.json").read_text()):
             if f"{lesson['id']}.question" in words and (len(sys.argv) < 4 or lesson["id"] in sys.argv[3:]):
                 check_lesson(browser, lesson, words)
-        browser.close()
 
 
 if __name__ == "__main__":

@@ -13,8 +13,6 @@ namespace stickslip {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path scenes_of_the_program = STICKSLIP_SOURCE_DIR "/studies/scenes";
-
 /// A shipped scene by a method of its defaults.
 struct Setting {
   std::string scene, method;
@@ -23,7 +21,7 @@ struct Setting {
 
 std::vector<Setting> settings() {
   std::vector<Setting> all;
-  for (const auto& entry : fs::directory_iterator(scenes_of_the_program))
+  for (const auto& entry : fs::directory_iterator(cases::shipped))
     if (const auto name = entry.path().stem(); entry.path().extension() == ".json" && name.extension() != ".study")
       for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) all.push_back({name.string(), method});
   std::sort(all.begin(), all.end(),
@@ -38,7 +36,7 @@ struct Solved {
   Trace trace;
   Trajectory<double> trajectory;
   explicit Solved(const Setting& setting) {
-    const fs::path file = scenes_of_the_program / (setting.scene + ".json");
+    const fs::path file = cases::shipped / (setting.scene + ".json");
     auto document = cases::load(file);
     document["method"] = {{setting.method, nlohmann::json::object()}};
     document.erase("parameters");

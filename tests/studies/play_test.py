@@ -4,6 +4,7 @@ offline: sliders, a prediction, derivatives, a scene with a fault, a run that is
 The numbers on the page are those of the program. --times prints how fast the page answers; --picture FILE writes the
 picture of docs/play.md. Exit code 77, which ctest counts as skipped, where there is no page or no Chromium."""
 import base64
+import contextlib
 import json
 import math
 import pathlib
@@ -428,8 +429,9 @@ def write_picture(browser, file):
     pathlib.Path(file).write_bytes(base64.b64decode(picture))
 
 
-def main():
-    program, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve()
+@contextlib.contextmanager
+def opened(folder):
+    """A browser with the page of a folder open, and that page; without one of the two the test is skipped."""
     page, chromium = folder / "stickslip.html", next(filter(None, map(shutil.which, BROWSERS)), None)
     if not page.exists() or not chromium:
         print("skipped: there is no page here (./play.sh), or no Chromium (Debian: apt install chromium)")
@@ -437,6 +439,13 @@ def main():
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = Browser(chromium, pathlib.Path(profile), page.as_uri())
         browser.ask("Network.enable")
+        yield browser, page
+        browser.close()
+
+
+def main():
+    program, source, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve()
+    with opened(folder) as (browser, page):
         browser.ask("Network.emulateNetworkConditions", offline=True, latency=0, downloadThroughput=0, uploadThroughput=0)
         if "--times" in sys.argv:
             show_times(browser, page)
@@ -449,7 +458,6 @@ def main():
             check_charts(browser)
             check_editor(browser)
             check_forms(browser)
-        browser.close()
     print("the page works")
 
 

@@ -7,7 +7,6 @@ import builtins
 import contextlib
 import io
 import json
-import os
 import pathlib
 import shutil
 import signal
@@ -19,8 +18,7 @@ import warnings
 import numpy as np
 
 import stickslip
-
-SCENES = pathlib.Path(os.environ["STICKSLIP_SCENES"])
+from python_test import SCENES, interrupt_after
 
 try:
     import pandas
@@ -196,20 +194,9 @@ class Studies(InFolder):
 
     @unittest.skipUnless(hasattr(signal, "setitimer"), "no interval timers here")
     def test_an_interrupt_keeps_the_cells_that_are_done(self):
-        study = {**STUDY, "timing": {"repeat": 1000}}  # minutes
-        self.write(study)
-
-        def interrupt(number, frame):
-            raise KeyboardInterrupt
-
-        old = signal.signal(signal.SIGALRM, interrupt)
-        try:
-            signal.setitimer(signal.ITIMER_REAL, 1)
-            with self.assertRaises(KeyboardInterrupt):
-                self.study()
-        finally:
-            signal.setitimer(signal.ITIMER_REAL, 0)
-            signal.signal(signal.SIGALRM, old)
+        self.write({**STUDY, "timing": {"repeat": 1000}})  # minutes
+        with self.assertRaises(KeyboardInterrupt), interrupt_after(1):
+            self.study()
         self.assertEqual(len(stickslip.load_study(self.out)), 8)
         self.write(STUDY)
         self.assertEqual(len(self.study(resume=True)), 8)  # the folder is free again

@@ -3,6 +3,7 @@
 PYTHONPATH=build/python/python STICKSLIP_SCENES=studies/scenes python3 tests/studies/python_test.py
 """
 
+import contextlib
 import gc
 import json
 import os
@@ -21,6 +22,21 @@ import numpy as np
 import stickslip
 
 SCENES = pathlib.Path(os.environ["STICKSLIP_SCENES"])
+
+
+@contextlib.contextmanager
+def interrupt_after(seconds):
+    """Ctrl-C, so many seconds after the start of what is done within."""
+    def interrupt(number, frame):
+        raise KeyboardInterrupt
+
+    old = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, old)
 
 
 def plate(cells=6, steps=2):
@@ -457,17 +473,8 @@ class Surroundings(unittest.TestCase):
 
     @unittest.skipUnless(hasattr(signal, "setitimer"), "no interval timers here")
     def test_an_interrupt_ends_the_solve(self):
-        def interrupt(number, frame):
-            raise KeyboardInterrupt
-
-        old = signal.signal(signal.SIGALRM, interrupt)
-        try:
-            signal.setitimer(signal.ITIMER_REAL, 0.3)
-            with self.assertRaises(KeyboardInterrupt):
-                stickslip.run(plate(20, 100000))  # minutes
-        finally:
-            signal.setitimer(signal.ITIMER_REAL, 0)
-            signal.signal(signal.SIGALRM, old)
+        with self.assertRaises(KeyboardInterrupt), interrupt_after(0.3):
+            stickslip.run(plate(20, 100000))  # minutes
 
     def test_the_same_scene_gives_the_same_bits(self):
         first, second = stickslip.run(plate()), stickslip.run(plate())

@@ -38,12 +38,7 @@ TEST_F(ReportCharts, WindowsEndWhereARunFailed) {
 }
 
 TEST_F(ReportCharts, WindowsAreOneForEachSettingAndScene) {
-  auto cells = three_methods();
-  for (auto& c : cells) c["vary"] = {{"/contacts/sole/friction", 0.1}};
-  auto more = three_methods();
-  for (auto& c : more) c["vary"] = {{"/contacts/sole/friction", 0.3}};
-  cells.insert(cells.end(), more.begin(), more.end());
-  record(description(), cells);
+  record(description(), in_two_scenes(three_methods()));
   EXPECT_EQ(report::robustness_windows(study(), {"stiffness"})->table.rows.size(), 2u);
   EXPECT_EQ(report::robustness_windows(study(), {"tolerance"})->table.rows.size(), 2u);
   EXPECT_FALSE(report::robustness_windows(study(), {"scale"}));

@@ -21,14 +21,12 @@ using testing::HasSubstr;
 using testing::Not;
 namespace fs = std::filesystem;
 
-const fs::path scene_files = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
-
 class ReportOfARun : public recorded::StudyOnDisk {
  protected:
   /// What `run --report` leaves of a shipped scene, and its page without scripts.
   std::string page_of(const std::string& scene, bool with_picture = true) {
-    const auto document = cases::load(scene_files / (scene + ".json"));
-    return page_of(cases::run(document, document["method"], scene_files / (scene + ".json")), with_picture);
+    const auto document = cases::load(cases::shipped / (scene + ".json"));
+    return page_of(cases::run(document, document["method"], cases::shipped / (scene + ".json")), with_picture);
   }
   std::string page_of(const CaseResult& result, bool with_picture = true) {
     std::ofstream(directory_ / "result.json") << result_json(result, "").dump();
@@ -62,8 +60,8 @@ TEST_F(ReportOfARun, HasPictureHistoriesStatesAndValues) {
 
 /// A slider over the steps whose fields were kept, the last of them first.
 TEST_F(ReportOfARun, HasASliderOverTheStepsThatWereKept) {
-  const auto document = cases::load(scene_files / "ironing.json");
-  const auto result = cases::run(document, document["method"], scene_files / "ironing.json");
+  const auto document = cases::load(cases::shipped / "ironing.json");
+  const auto result = cases::run(document, document["method"], cases::shipped / "ironing.json");
   EXPECT_THAT(page_of(result), Not(HasSubstr("id=\"steps\"")));
   json drawn = picture_json(result, 1);
   drawn["interface"] = interface_json(result);
@@ -112,7 +110,7 @@ TEST_F(ReportOfARun, OfAFrictionlessSceneThatEndsOpenSpeaksOfNoSlipAndDrawsNoTra
 
 /// The block of the slider, dragged to the edge of its cone at the third step of five, and on.
 json dragged_block() {
-  json document = cases::load(scene_files / "slider.json");
+  json document = cases::load(cases::shipped / "slider.json");
   document["supports"][0]["move"]["x"] = {{0, 0}, {1, 0.05}};
   document["time"] = {{"end", 1}, {"steps", 5}};
   document["parameters"] = {{"U", "/supports/0/move/x/1/1"}, {"mu", "/contacts/sole/friction"}};
@@ -121,7 +119,7 @@ json dragged_block() {
 
 TEST_F(ReportOfARun, HasMarginsAsATableAndAsAMap) {
   const json document = dragged_block();
-  const std::string html = page_of(cases::run(document, document["method"], scene_files / "slider.json"));
+  const std::string html = page_of(cases::run(document, document["method"], cases::shipped / "slider.json"));
   EXPECT_THAT(html, AllOf(HasSubstr(">Where derivatives hold</h2>"), HasSubstr("id=\"nearest-change\""),
                           HasSubstr("<caption>Margins of every step"), HasSubstr(">two sides<"),
                           HasSubstr(">0, at a change<"), HasSubstr(">mu may change by</th>")));
@@ -133,7 +131,7 @@ TEST_F(ReportOfARun, HasMarginsAsATableAndAsAMap) {
 /// At t = 0.6 the derivative by U is 0 from below and 0.6 from above: both are points, and no curve passes.
 TEST_F(ReportOfARun, DrawsNoDerivativeWithTwoSidesAsAPointOfACurve) {
   const json document = dragged_block();
-  const std::string html = page_of(cases::run(document, document["method"], scene_files / "slider.json"));
+  const std::string html = page_of(cases::run(document, document["method"], cases::shipped / "slider.json"));
   EXPECT_THAT(html, HasSubstr("values from below and from above differ at a step, the curve has a gap"));
   std::istringstream rows(text_of("derivative-histories.csv"));
   std::vector<std::string> at_the_edge;
@@ -148,7 +146,7 @@ TEST_F(ReportOfARun, OfAnAdjointHasTheMarginsAndNoMap) {
   json document = dragged_block();
   document["sensitivity"] = {{"mode", "adjoint"}};
   document["objectives"]["J"] = {{"of", "u"}, {"at", 1}};
-  const std::string html = page_of(cases::run(document, document["method"], scene_files / "slider.json"));
+  const std::string html = page_of(cases::run(document, document["method"], cases::shipped / "slider.json"));
   EXPECT_THAT(html, AllOf(HasSubstr("<caption>Margins of every step"), HasSubstr(">two sides<"),
                           Not(HasSubstr("id=\"nearest-change\""))));
 }
@@ -254,8 +252,8 @@ TEST_F(ReportOfARun, WithoutASolutionShowsTheLastStepThatHasOneUnderABanner) {
 }
 
 TEST_F(ReportOfARun, ThatIsInaccurateSaysNotToUseItsValues) {
-  const auto document = cases::load(scene_files / "stop.json");
-  const std::string file = scene_files / "stop.json";
+  const auto document = cases::load(cases::shipped / "stop.json");
+  const std::string file = cases::shipped / "stop.json";
   const std::string stiff = page_of(cases::run(document, {{"penalty", {{"stiffness", 1e16}}}}, file));
   EXPECT_THAT(stiff, AllOf(HasSubstr("<p class=\"banner\"><strong>Inaccurate.</strong>"),
                            HasSubstr("Responses at the last step, and")));

@@ -12,6 +12,7 @@
 #include "studies/io/input_fault.hpp"
 #include "studies/io/output_folder.hpp"
 #include "studies/sweep/workers.hpp"
+#include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip {
 namespace {
@@ -21,39 +22,31 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-class ResultRows : public testing::Test {
+class ResultRows : public InOwnFolder {
  protected:
-  ResultRows() {
-    std::filesystem::remove_all(directory_);
-    std::filesystem::create_directories(directory_);
-  }
-  ~ResultRows() override { std::filesystem::remove_all(directory_); }
-
   /// A line that the program wrote.
   static std::string line(const json& row) { return sealed(row).dump() + "\n"; }
   /// As a study left it, and somebody edited it.
   void write(const std::string& text) {
-    const auto file = directory_ / "results.jsonl";
+    const auto file = folder_ / "results.jsonl";
     if (!std::filesystem::exists(file)) write_output(file, "", Sums::of_each_line);
     std::ofstream(file, std::ios::binary) << text;
   }
-  std::string content() { return read_file(directory_ / "results.jsonl"); }
+  std::string content() { return read_file(folder_ / "results.jsonl"); }
 
   const json a = {{"id", "a"}, {"status", "cap"}}, b = {{"id", "b"}, {"status", "cap"}};
-  const std::filesystem::path directory_ =
-      std::filesystem::path("result_rows_test") / testing::UnitTest::GetInstance()->current_test_info()->name();
   std::vector<std::string> notes_;
 };
 
 TEST_F(ResultRows, AreNoneInAnEmptyDirectory) {
-  EXPECT_THAT(read_rows(directory_).rows, IsEmpty());
-  EXPECT_THAT(resume_rows(directory_, {"a"}, notes_), IsEmpty());
+  EXPECT_THAT(read_rows(folder_).rows, IsEmpty());
+  EXPECT_THAT(resume_rows(folder_, {"a"}, notes_), IsEmpty());
   EXPECT_THAT(notes_, IsEmpty());
 }
 
 TEST_F(ResultRows, AreLeftAloneWhereTheyAreSound) {
   write(line(b) + line(a));
-  const auto rows = resume_rows(directory_, {"a", "b"}, notes_);
+  const auto rows = resume_rows(folder_, {"a", "b"}, notes_);
   EXPECT_EQ(rows.size(), 2u);
   EXPECT_THAT(notes_, IsEmpty());
   EXPECT_EQ(content(), line(b) + line(a));
@@ -61,7 +54,7 @@ TEST_F(ResultRows, AreLeftAloneWhereTheyAreSound) {
 
 TEST_F(ResultRows, LoseATornLastLineAndSayIt) {
   write(line(a) + "{\"id\":\"b\",\"sta");
-  const auto rows = resume_rows(directory_, {"a", "b"}, notes_);
+  const auto rows = resume_rows(folder_, {"a", "b"}, notes_);
   EXPECT_EQ(rows.count("a"), 1u);
   EXPECT_EQ(rows.count("b"), 0u);
   EXPECT_THAT(notes_, ElementsAre("a torn last line (14 bytes) was dropped"));
@@ -70,20 +63,20 @@ TEST_F(ResultRows, LoseATornLastLineAndSayIt) {
 
 TEST_F(ResultRows, LoseATornFirstLine) {
   write("{\"id\":");
-  EXPECT_THAT(resume_rows(directory_, {"a"}, notes_), IsEmpty());
+  EXPECT_THAT(resume_rows(folder_, {"a"}, notes_), IsEmpty());
   EXPECT_EQ(content(), "");
 }
 
 TEST_F(ResultRows, LoseDoublesAndLinesThatAreNoRows) {
   const json first = {{"id", "a"}, {"n", 1}, {"status", "cap"}}, second = {{"id", "a"}, {"n", 2}, {"status", "cap"}};
   write(line(first) + "nonsense\n[1]\n{\"id\":7}\n" + line(second));
-  const auto rows = resume_rows(directory_, {"a"}, notes_);
+  const auto rows = resume_rows(folder_, {"a"}, notes_);
   EXPECT_EQ(rows.at("a")["n"], 2);
   EXPECT_THAT(notes_, ElementsAre("line 2 is no row and was dropped: it is not JSON; line 3 is no row and was dropped: "
                                   "it is an array; line 4 is no row and was dropped: it has no \"status\"; "
                                   "1 double row(s) were dropped"));
   EXPECT_EQ(content(), line(second));
-  EXPECT_EQ(read_file(directory_ / "results.stale.jsonl"), "nonsense\n[1]\n{\"id\":7}\n");  // nothing is lost
+  EXPECT_EQ(read_file(folder_ / "results.stale.jsonl"), "nonsense\n[1]\n{\"id\":7}\n");  // nothing is lost
 }
 
 /// A cell whose row is damaged is run again.
@@ -96,18 +89,18 @@ TEST_F(ResultRows, LoseWhatTheProgramDoesNotWrite) {
            {R"({"id":"a","status":"cap","errors":{"kkt":[]}})", "/errors/kkt is []; must be an object"},
            {R"({"id":"a","status":"cap","refine":0.5})", "/refine is 0.5; must be a whole number"}}) {
     write(row + "\n");
-    const auto stored = read_rows(directory_);
+    const auto stored = read_rows(folder_);
     EXPECT_THAT(stored.rows, IsEmpty()) << row;
     EXPECT_EQ(stored.faults(), "line 1 is no row and was dropped: " + fault);
   }
 }
 
 TEST_F(ResultRows, GoWithRecordsThatAreWholeOrNamed) {
-  EXPECT_NO_THROW(check_records(directory_));
+  EXPECT_NO_THROW(check_records(folder_));
   const auto fault = [&](const std::string& name, const std::string& text) {
-    std::ofstream(directory_ / name) << text;
+    std::ofstream(folder_ / name) << text;
     try {
-      check_records(directory_);
+      check_records(folder_);
     } catch (const InputFault& error) {
       return std::string(error.what());
     }
@@ -125,14 +118,14 @@ TEST_F(ResultRows, GoWithRecordsThatAreWholeOrNamed) {
 TEST_F(ResultRows, PutThoseOfAnotherStudyAside) {
   const json old = {{"id", "old"}, {"status", "cap"}};
   write(line(old) + line(a));
-  EXPECT_EQ(resume_rows(directory_, {"a"}, notes_).size(), 1u);
+  EXPECT_EQ(resume_rows(folder_, {"a"}, notes_).size(), 1u);
   EXPECT_THAT(notes_, ElementsAre(HasSubstr("1 row(s) of another study")));
-  EXPECT_EQ(read_file(directory_ / "results.stale.jsonl"), line(old));
+  EXPECT_EQ(read_file(folder_ / "results.stale.jsonl"), line(old));
   EXPECT_EQ(content(), line(a));
 }
 
 TEST_F(ResultRows, AreWrittenInTheOrderOfTheStudy) {
-  write_rows(directory_, {"b", "c", "a"},
+  write_rows(folder_, {"b", "c", "a"},
              {{"a", {{"id", "a"}, {"status", "cap"}}}, {"b", {{"id", "b"}, {"status", "cap"}}}});
   EXPECT_EQ(content(), line(b) + line(a));
 }
@@ -145,17 +138,17 @@ TEST_F(ResultRows, AreKnownByTheirChecksum) {
                     {"provenance", {{"git", "abc"}}}};
   const std::string sound = line(row);
   write(sound);
-  EXPECT_EQ(read_rows(directory_).rows.size(), 1u);
-  EXPECT_THAT(read_rows(directory_).unsealed, IsEmpty());
+  EXPECT_EQ(read_rows(folder_).rows.size(), 1u);
+  EXPECT_THAT(read_rows(folder_).unsealed, IsEmpty());
   int noticed = 0, changes = 0;
   for (std::size_t i = 0; i + 1 < sound.size(); ++i) {
     std::string damaged = sound;
     damaged[i] = damaged[i] == '3' ? '4' : '3';
     write(damaged);
-    const auto stored = read_rows(directory_);
+    const auto stored = read_rows(folder_);
     ++changes;
     noticed += stored.rows.empty() || !stored.unsealed.empty();
-    EXPECT_TRUE(resume_rows(directory_, {"a"}, notes_).empty()) << damaged;
+    EXPECT_TRUE(resume_rows(folder_, {"a"}, notes_).empty()) << damaged;
   }
   EXPECT_EQ(noticed, changes);
 }
@@ -166,48 +159,48 @@ TEST_F(ResultRows, KeepTheirChecksumInOtherWords) {
   std::string text = content();
   text.replace(text.find("1e-05"), 5, "0.00001");
   write(text);
-  EXPECT_TRUE(read_rows(directory_).sound());
+  EXPECT_TRUE(read_rows(folder_).sound());
 }
 
 TEST_F(ResultRows, AreRunAnewWithoutAChecksum) {
   write(a.dump() + "\n" + line(b));
-  EXPECT_EQ(read_rows(directory_).rows.size(), 2u);
-  const auto rows = resume_rows(directory_, {"a", "b"}, notes_);
+  EXPECT_EQ(read_rows(folder_).rows.size(), 2u);
+  const auto rows = resume_rows(folder_, {"a", "b"}, notes_);
   EXPECT_EQ(rows.count("a"), 0u);
   EXPECT_EQ(rows.count("b"), 1u);
   EXPECT_THAT(notes_, ElementsAre("1 row(s) without a checksum were dropped"));
-  EXPECT_EQ(read_file(directory_ / "results.stale.jsonl"), a.dump() + "\n");
+  EXPECT_EQ(read_file(folder_ / "results.stale.jsonl"), a.dump() + "\n");
 }
 
 TEST_F(ResultRows, LeaveOutTimedRunsThatAreDamaged) {
-  append_timing(directory_, "a", 1, {{"total", 2.5}});
-  const std::string sound = read_file(directory_ / "timings.jsonl");
+  append_timing(folder_, "a", 1, {{"total", 2.5}});
+  const std::string sound = read_file(folder_ / "timings.jsonl");
   for (const std::string& damaged :
        {std::string("{}"), std::string("[1]"), std::string("{\"id\":\"a\",\"round\":2,\"seconds\":{\"total\":1}}"),
         std::string("{\"id\":\"a\",\"round\":2,\"seconds\":\"x\"}"), std::string("nonsense \xff")})
-    append_line(directory_ / "timings.jsonl", damaged);
+    append_line(folder_ / "timings.jsonl", damaged);
   int count = 0;
-  EXPECT_EQ(read_timings(directory_, &count).at("a").size(), 1u);
+  EXPECT_EQ(read_timings(folder_, &count).at("a").size(), 1u);
   EXPECT_EQ(count, 5);
 }
 
 TEST_F(ResultRows, RememberEachTimedRun) {
-  append_timing(directory_, "a", 2, {{"total", 1.5}});
-  append_timing(directory_, "a", 1, {{"total", 2.5}});
-  std::ofstream(directory_ / "timings.jsonl", std::ios::app) << "{\"id\":\"a\",\"rou";  // torn
-  const auto timings = read_timings(directory_);
+  append_timing(folder_, "a", 2, {{"total", 1.5}});
+  append_timing(folder_, "a", 1, {{"total", 2.5}});
+  std::ofstream(folder_ / "timings.jsonl", std::ios::app) << "{\"id\":\"a\",\"rou";  // torn
+  const auto timings = read_timings(folder_);
   ASSERT_EQ(timings.at("a").size(), 2u);
   EXPECT_EQ(timings.at("a").at(1)["total"], 2.5);
 }
 
 TEST_F(ResultRows, BelongToOneProcessAtATime) {
-  const DirectoryLock lock(directory_);
+  const DirectoryLock lock(folder_);
   // Another process tells what it met; with two jobs each piece runs in a child, which does not inherit the lock.
   run_in_processes(
       2, 2,
       [&](std::size_t) -> std::string {
         try {
-          const DirectoryLock other(directory_);
+          const DirectoryLock other(folder_);
         } catch (const DirectoryInUse& error) {
           return error.what();
         }
@@ -220,18 +213,18 @@ TEST_F(ResultRows, BelongToOneProcessAtATime) {
 }
 
 TEST_F(ResultRows, AreLostWithTheirDirectoryWithAWord) {
-  const DirectoryLock lock(directory_);
+  const DirectoryLock lock(folder_);
   EXPECT_NO_THROW(lock.check());
-  std::filesystem::remove_all(directory_);
+  std::filesystem::remove_all(folder_);
   EXPECT_THROW(lock.check(), InputFault);
-  std::filesystem::create_directories(directory_);  // another one of the same name
-  std::ofstream(directory_ / ".lock") << "";
+  std::filesystem::create_directories(folder_);  // another one of the same name
+  std::ofstream(folder_ / ".lock") << "";
   EXPECT_THROW(lock.check(), InputFault);
 }
 
 TEST_F(ResultRows, AreFreeAgainAfterTheLock) {
-  { const DirectoryLock lock(directory_); }
-  EXPECT_NO_THROW(DirectoryLock{directory_});
+  { const DirectoryLock lock(folder_); }
+  EXPECT_NO_THROW(DirectoryLock{folder_});
 }
 
 }  // namespace

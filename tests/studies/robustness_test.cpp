@@ -214,7 +214,7 @@ TEST(IteratedDerivatives, ThatDoNotSettleAreGivenUpEarly) {
 }
 
 TEST(Scales, OfAMillionthNeedNoOtherPath) {
-  const auto belt = cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/belt.json");
+  const auto belt = cases::load(cases::shipped / "belt.json");
   const auto expected = run(belt, json::parse(R"({"monolithic_al": {}})"));
   for (const double scale : {1e-5, 1e-6, 1e-7, 1e-8}) {
     const auto result = run(belt, {{"monolithic_al", {{"scale", scale}}}});
@@ -233,7 +233,7 @@ TEST(Times, ThatCannotBeHalvedEndARunAllTheSame) {
   scene["loads"][0].erase("history");
   scene["time"] = {{"end", 5e-324}, {"steps", 1}};
   EXPECT_EQ(run(scene, json::parse(R"({"monolithic_al": {}})")).status(), Status::no_equilibrium);
-  auto belt = cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/belt.json");
+  auto belt = cases::load(cases::shipped / "belt.json");
   belt["time"] = {{"end", 5e-324}, {"steps", 1}};
   belt.erase("parameters");
   belt["supports"][1]["move"]["y"] = json::parse("[[0, 1e-20], [1, -0.01]]");

@@ -17,8 +17,6 @@ using perturbed::Perturbation;
 namespace fs = std::filesystem;
 
 const fs::path references = fs::path(STICKSLIP_SOURCE_DIR) / "tests" / "references";
-const fs::path shipped = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
-
 /// Relative to the largest value of a response in the run. Coordinates are 1e-15 off, gaps of 1e-3 of them 1e-12, and
 /// the conditions of the scenes make up to 1e3 of that.
 constexpr double same_answer = 1e-9;
@@ -112,7 +110,7 @@ void expect_rounding_does_not_matter(const fs::path& file) {
   for (auto& [name, body] : document["bodies"].items())
     if (body["mesh"].contains("gmsh"))
       body["mesh"]["gmsh"] =
-          shipped.parent_path() / "meshes" / fs::path(body["mesh"]["gmsh"].get<std::string>()).filename();
+          cases::shipped.parent_path() / "meshes" / fs::path(body["mesh"]["gmsh"].get<std::string>()).filename();
   for (const auto& method : methods_of(file)) {
     document["method"] = method;
     const Input input = cases::read(document, file);
@@ -138,7 +136,7 @@ bool is_large(const std::string& name) {
 
 std::vector<fs::path> scenes_by_size(bool large) {
   std::vector<fs::path> found;
-  for (const auto& folder : {references, shipped})
+  for (const auto& folder : {references, cases::shipped})
     for (const auto& entry : fs::directory_iterator(folder)) {
       const auto& path = entry.path();
       const std::string name = path.stem().string();

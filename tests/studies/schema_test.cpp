@@ -16,6 +16,7 @@
 #include "studies/input/scene_reader.hpp"
 #include "studies/run/simulation.hpp"
 #include "studies/sweep/study_reader.hpp"
+#include "tests/studies/cases.hpp"
 #include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip {
@@ -24,16 +25,9 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const fs::path scenes_folder = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
-
-json parsed_file(const fs::path& path) {
-  std::ifstream file(path);
-  return json::parse(file, nullptr, true, true);  // with comments
-}
-
 std::vector<fs::path> shipped_files(bool studies) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(scenes_folder)) {
+  for (const auto& entry : fs::directory_iterator(cases::shipped)) {
     const std::string name = entry.path().filename().string();
     const bool study = name.find(".study.json") != std::string::npos;
     if (entry.path().extension() == ".json" && study == studies) files.push_back(entry.path());
@@ -120,7 +114,7 @@ std::vector<json> rich_scenes() {
 std::vector<Diagnostic> faults(const json& scene) {
   Diagnostics diagnostics;
   MeshFiles files;
-  const auto document = JsonDocument::parse(scene.dump(), (scenes_folder / "scene.json").string(), diagnostics);
+  const auto document = JsonDocument::parse(scene.dump(), (cases::shipped / "scene.json").string(), diagnostics);
   if (document) read_scene(*document, std::nullopt, diagnostics, files);
   return diagnostics.errors();
 }
@@ -245,7 +239,7 @@ TEST(Schema, DescribesEveryKeyAndShowsAnExample) {
 /// All that the solver makes of a scene; its faults where it has any.
 json outcome(const json& scene) {
   Diagnostics diagnostics;
-  const auto document = JsonDocument::parse(scene.dump(), (scenes_folder / "scene.json").string(), diagnostics);
+  const auto document = JsonDocument::parse(scene.dump(), (cases::shipped / "scene.json").string(), diagnostics);
   const auto simulation = document ? prepare(*document, {}, std::nullopt, diagnostics) : std::nullopt;
   if (!simulation) return {{"faults", diagnostics.text()}};
   const json result = result_json(simulate(*simulation), "");
@@ -313,7 +307,7 @@ TEST(Schema, TakesEveryShippedFileAndRefusesUnknownKeysInIt) {
     const json schema = studies ? study_schema() : scene_schema();
     json valid = json::array(), invalid = json::array();
     std::vector<std::pair<std::string, json>> documents;
-    for (const auto& path : shipped_files(studies)) documents.emplace_back(path.filename().string(), parsed_file(path));
+    for (const auto& path : shipped_files(studies)) documents.emplace_back(path.filename().string(), cases::load(path));
     ASSERT_GE(documents.size(), 7u);
     if (!studies)
       for (const json& scene : rich_scenes()) documents.emplace_back("rich", scene);

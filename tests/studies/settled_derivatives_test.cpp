@@ -7,7 +7,7 @@ namespace stickslip::settled_derivatives {
 namespace {
 
 TEST(IteratedDerivatives, EndWhereTheyRest) {
-  const std::filesystem::path file = STICKSLIP_SOURCE_DIR "/studies/scenes/roller.json";
+  const std::filesystem::path file = cases::shipped / "roller.json";
   const auto result = cases::run(cases::load(file), {{"uzawa_al", {{"scale", 1}}}}, file);
   ASSERT_EQ(result.status(), Status::converged) << result.message();
   for (const auto& record : result.gradients.records)

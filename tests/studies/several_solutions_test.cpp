@@ -131,32 +131,17 @@ TEST(SeveralSolutions, AreNotToldOfANodeInTwoContactsWithoutFriction) {
   for (const json& method : {penalty, uzawa, monolithic}) EXPECT_THAT(warnings(groove(0), method), IsEmpty()) << method;
 }
 
-/// A block of `cells` cells in the width of its sole, driven on to a slab of one cell, whose modulus is `soft`.
-json block_on_a_soft_slab(int cells, double soft) {
-  const auto body = [](double modulus, const json& min, const json& max, int across) {
-    return json{{"mesh", {{"box", {{"min", min}, {"max", max}, {"cells", {across, 1}}}}}},
-                {"material", {{"linear_elastic", {{"E", modulus}, {"nu", 0.3}}}}}};
-  };
-  return {{"bodies", {{"block", body(1000, {0.5, 1}, {1.5, 1.5}, cells)}, {"slab", body(soft, {0, 0}, {1.5, 1}, 1)}}},
-          {"contacts", {{"t", {{"slave", "block.bottom"}, {"master", "slab.top"}, {"friction", 0.3}}}}},
-          {"supports",
-           {{{"on", "slab.bottom"}, {"move", {{"x", 0}, {"y", 0}}}},
-            {{"on", "block.top"}, {"move", {{"x", {{0, 0}, {1, 1e-6}}}, {"y", {{0, 0}, {1, -0.02}}}}}}}},
-          {"time", {{"end", 1}, {"steps", 1}}},
-          {"responses", {{"Fx", {{"reaction", {{"on", "block.top"}, {"component", "x"}}}}}}}};
-}
-
 TEST(SeveralSolutions, AreToldOfNodesOfARigidFaceOnOneFacet) {
   for (const json& method : {uzawa, monolithic}) {  // (of a penalty its springs decide, which soft_penalty tells)
     // three nodes share out the force of two nodes of the slab, which the block alone resists: by 3e-9 of its motion
-    EXPECT_THAT(warnings(block_on_a_soft_slab(2, 3e-6), method), Contains(is_undetermined("t"))) << method;
-    EXPECT_THAT(warnings(block_on_a_soft_slab(1, 3e-6), method), Not(Contains(is_undetermined("t")))) << method;
-    EXPECT_THAT(warnings(block_on_a_soft_slab(2, 100), method), Not(Contains(is_undetermined("t")))) << method;
+    EXPECT_THAT(warnings(cases::block_on_a_slab(2, 3e-6), method), Contains(is_undetermined("t"))) << method;
+    EXPECT_THAT(warnings(cases::block_on_a_slab(1, 3e-6), method), Not(Contains(is_undetermined("t")))) << method;
+    EXPECT_THAT(warnings(cases::block_on_a_slab(2, 100), method), Not(Contains(is_undetermined("t")))) << method;
   }
 }
 
 TEST(SeveralSolutions, AreToldOfNodesOfADrivenFaceOnOneFacet) {
-  json scene = block_on_a_soft_slab(2, 100);
+  json scene = cases::block_on_a_slab(2, 100);
   scene["supports"].push_back(scene["supports"][1]);
   scene["supports"][2]["on"] = "block.bottom";
   EXPECT_THAT(warnings(scene, monolithic), Contains(is_undetermined("t")));
@@ -355,7 +340,7 @@ TEST(UnstableSteps, AreNoneWhereABodyComesToRest) {
 }
 
 TEST(SoftPenalty, IsToldWhereItsSpringsYieldBesideTheBodies) {
-  const json scene = block_on_a_soft_slab(1, 100);
+  const json scene = cases::block_on_a_slab(1, 100);
   const auto soft = has_code(WarningCode::soft_penalty);
   EXPECT_THAT(warnings(scene, penalty), Not(Contains(soft)));  // 1e3: by 1e-3
   EXPECT_THAT(warnings(scene, uzawa), Not(Contains(soft)));

@@ -33,15 +33,16 @@ json shallow_ironing() {
         {"V", {{"reaction", {{"on", "die.top"}, {"component", "y"}}}}}}}};
 }
 
+void within(double x, double least, double most) {
+  EXPECT_GE(x, least);
+  EXPECT_LE(x, most);
+}
+
 TEST(SlowShallowIroning, LiesWithinThePublishedCurvesWithoutARipple) {
   const auto result =
       cases::run(shallow_ironing(), {{"monolithic_al", json::object()}}, meshes / "shallow_ironing.json");
   ASSERT_TRUE(is_converged(result.status())) << result.message();
   EXPECT_EQ(result.trajectory.counters.cutbacks, 0);
-  const auto within = [](double x, double least, double most) {
-    EXPECT_GE(x, least);
-    EXPECT_LE(x, most);
-  };
   const auto& responses = result.problem->model.scene.responses;
   const int h = responses[0].name == "H" ? 0 : 1, v = 1 - h;
   double down = 0, along = 0, most = 0, least = 0;
@@ -97,10 +98,6 @@ TEST(SlowShallowIroning, ByEveryMethodOnSegmentsLiesWithinThePublishedCurvesAndI
     ASSERT_TRUE(is_converged(result.status())) << result.message();
     ASSERT_EQ(result.steps.size(), 110);
     EXPECT_EQ(result.trajectory.counters.cutbacks, 0);
-    const auto within = [](double x, double least, double most) {
-      EXPECT_GE(x, least);
-      EXPECT_LE(x, most);
-    };
     within(forces_at(result, 0.5)[0], 81.5, 96.2);
     const auto [V, H] = forces_at(result, 1);
     within(V, 267, 332);

@@ -13,11 +13,9 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const fs::path folder_of_shipped = STICKSLIP_SOURCE_DIR "/studies/scenes";
-
 CaseResult run(const std::string& name) {
-  return cases::run(cases::load(folder_of_shipped / (name + ".json")), {{"monolithic_al", json::object()}},
-                    folder_of_shipped / (name + ".json"));
+  return cases::run(cases::load(cases::shipped / (name + ".json")), {{"monolithic_al", json::object()}},
+                    cases::shipped / (name + ".json"));
 }
 
 /// A response of all steps.
@@ -50,7 +48,7 @@ double value_of(const CaseResult& result, const std::string& name) {
 
 TEST(ShippedStudies, HaveTheValuesThatTheyAreHeldAgainst) {
   for (const char* name : {"stop", "stop_bars", "plastic_bar", "truss", "ironing"}) {
-    const json study = cases::load(folder_of_shipped / (std::string(name) + ".study.json"));
+    const json study = cases::load(cases::shipped / (std::string(name) + ".study.json"));
     json values;
     for (const auto& reference : study["reference"])
       if (reference.contains("values")) values = reference["values"];
@@ -96,13 +94,13 @@ TEST(ShippedScenes, OfABallFlowsFromWhereJohnsonSays) {  // A16
 }
 
 TEST(ShippedScenes, OfABallOnAFineMeshYieldsAtJohnsonsDepthAndForce) {  // A16
-  json scene = cases::load(folder_of_shipped / "indentation.json");
+  json scene = cases::load(cases::shipped / "indentation.json");
   scene["bodies"]["metal"]["mesh"]["box"] = {
       {"min", {0, -1.5}}, {"max", {1, 0}}, {"cells", {40, 30}}, {"grade", {{"top", 4}}}};
   scene["obstacles"]["ball"]["move"]["y"] = {{0, 0}, {1, -0.008}};
   scene["time"] = {{"end", 1}, {"steps", 32}};
   scene["parameters"] = json::object();
-  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, folder_of_shipped / "indentation.json");
+  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, cases::shipped / "indentation.json");
   ASSERT_TRUE(is_converged(result.status())) << result.message();
   const auto press = history(result, "press"), flow = history(result, "flow");
   const auto first = std::find_if(flow.begin(), flow.end(), [](double a) { return a > 0; }) - flow.begin();
@@ -113,7 +111,7 @@ TEST(ShippedScenes, OfABallOnAFineMeshYieldsAtJohnsonsDepthAndForce) {  // A16
 
 TEST(ShippedScenes, OfABallInASoftMetalReachesTheMeanPressureOfFullPlasticity) {  // A16: 2.7 to 3.1 of the yield stress
   const double E = 1000, nu = 0.3, Y = 0.5, R = 10, modulus = E / (1 - nu * nu), cell = 2.4 / 192;
-  json scene = cases::load(folder_of_shipped / "indentation.json");
+  json scene = cases::load(cases::shipped / "indentation.json");
   auto& metal = scene["bodies"]["metal"];
   metal["mesh"]["box"] = {{"min", {0, -2.4}}, {"max", {2.4, 0}}, {"cells", {192, 40}}, {"grade", {{"top", 20}}}};
   metal["material"]["j2_plastic"]["yield"] = Y;
@@ -122,7 +120,7 @@ TEST(ShippedScenes, OfABallInASoftMetalReachesTheMeanPressureOfFullPlasticity) {
   scene["time"] = {{"end", 1}, {"steps", 12}};
   scene["parameters"] = json::object();
   scene.erase("output");
-  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, folder_of_shipped / "indentation.json");
+  const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, cases::shipped / "indentation.json");
   ASSERT_TRUE(is_converged(result.status())) << result.message();
   const auto press = history(result, "press"), radius = history(result, "radius");
   double sum = 0, first = 0;
@@ -145,9 +143,9 @@ TEST(ShippedScenes, OfABallInASoftMetalReachesTheMeanPressureOfFullPlasticity) {
 }
 
 TEST(ShippedScenes, OfATurnedRingHasTheTorqueOfFrictionAndOnFacetsNoEquilibrium) {  // A14
-  json scene = cases::load(folder_of_shipped / "turned_rings.json");
+  json scene = cases::load(cases::shipped / "turned_rings.json");
   const auto run = [&] {
-    return cases::run(scene, {{"monolithic_al", json::object()}}, folder_of_shipped / "turned_rings.json");
+    return cases::run(scene, {{"monolithic_al", json::object()}}, cases::shipped / "turned_rings.json");
   };
   const auto result = run();
   ASSERT_TRUE(is_converged(result.status())) << result.message();
@@ -167,11 +165,11 @@ TEST(ShippedScenes, OfATurnedRingHasTheTorqueOfFrictionAndOnFacetsNoEquilibrium)
 
 TEST(ShippedScenes, OfAFoldedArchDoesNotHangOnItsSteps) {
   // 45 steps and 90: no step is cut; force and crown differ by 0.14 % at most (B4 asks for 2 %)
-  json scene = cases::load(folder_of_shipped / "arch.json");
+  json scene = cases::load(cases::shipped / "arch.json");
   std::vector<CaseResult> results;
   for (int steps : {45, 90}) {
     scene["time"]["steps"] = steps;
-    results.push_back(cases::run(scene, {{"monolithic_al", json::object()}}, folder_of_shipped / "arch.json"));
+    results.push_back(cases::run(scene, {{"monolithic_al", json::object()}}, cases::shipped / "arch.json"));
     ASSERT_TRUE(is_converged(results.back().status())) << results.back().message();
     for (const auto& step : results.back().steps) EXPECT_EQ(step.increment->cutbacks, 0);
   }
@@ -186,8 +184,8 @@ TEST(ShippedScenes, OfAFoldedArchDoesNotHangOnItsSteps) {
 TEST(ShippedScenes, OfABlockOnASlopeSlideAtTheClosedForm) {  // 1e-9: the stiffness of the block cancels to rounding
   const double mu = 0.3, slope = 0.1, down = 1 - mu * slope;
   for (const char* method : {"monolithic_al", "penalty", "uzawa_al"}) {
-    const auto result = cases::run(cases::load(folder_of_shipped / "slope.json"), {{method, json::object()}},
-                                   folder_of_shipped / "slope.json");
+    const auto result = cases::run(cases::load(cases::shipped / "slope.json"), {{method, json::object()}},
+                                   cases::shipped / "slope.json");
     ASSERT_TRUE(is_converged(result.status())) << method << result.message();
     EXPECT_NEAR(value_of(result, "push"), (slope + mu) / down, 1e-9) << method;
     EXPECT_NEAR(value_of(result, "push/mu"), (1 + slope * slope) / (down * down), 1e-9) << method;
@@ -214,7 +212,7 @@ TEST(ShippedScenes, OfARollerOnABlockHaveHertzWidthAndPressure) {  // B1: 3 % of
 TEST(ShippedScenes, OfARollerWithFrictionHaveTheNumbersOfAPeer) {
   // B1 with mu = 0.1, against code_aster's V6.03.154 (quadratic elements, present geometry): the top of the block on
   // the axis, to 3 %. On facets, nodes of the roller have 7 % too little there to 6 % too much.
-  json scene = cases::load(folder_of_shipped / "roller.json");
+  json scene = cases::load(cases::shipped / "roller.json");
   scene["contacts"]["line"]["friction"] = 0.1;
   scene["contacts"]["line"]["surface"] = "smooth";
   scene["parameters"] = json::object();
@@ -223,7 +221,7 @@ TEST(ShippedScenes, OfARollerWithFrictionHaveTheNumbersOfAPeer) {
   responses["sunk"] = {{"displacement", {{"on", "block"}, {"at", {0, 0}}, {"component", "y"}}}};
   for (const int cells : {640, 641}) {  // a node of the block on the axis, or the middle of a cell
     scene["bodies"]["block"]["mesh"]["box"]["cells"] = {cells, 24};
-    const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, folder_of_shipped / "roller.json");
+    const auto result = cases::run(scene, {{"monolithic_al", json::object()}}, cases::shipped / "roller.json");
     ASSERT_TRUE(is_converged(result.status())) << result.message();
     for (const char* pressure : {"axis", "peak"})  // 2.0 and 2.8 %, 2.6 %
       EXPECT_NEAR(value_of(result, pressure), 3542.69, 0.03 * 3542.69) << pressure << cells;
@@ -247,7 +245,7 @@ TEST(ShippedScenes, OfThreeTubesAreSymmetricAndHoldOneAnother) {
 }
 
 TEST(ShippedScenes, OfAPinchedTubeAreThoseOfItsQuarterOnARigidPlane) {
-  json scene = cases::load(folder_of_shipped / "pinched_tube.json"), quarter = scene;
+  json scene = cases::load(cases::shipped / "pinched_tube.json"), quarter = scene;
   auto& ring = quarter["bodies"]["tube"]["mesh"]["ring"];
   ring["to_angle"] = 180;
   ring["cells"] = {2, 16};
@@ -258,7 +256,7 @@ TEST(ShippedScenes, OfAPinchedTubeAreThoseOfItsQuarterOnARigidPlane) {
                                    {"master", "middle"}};  // (nothing slips where it is symmetric)
   quarter["supports"][1]["move"] = {{"y", 0}};
   scene["parameters"]["mu"] = {{"/contacts/high/friction", 1}, {"/contacts/low/friction", 1}};
-  const fs::path file = folder_of_shipped / "pinched_tube.json";
+  const fs::path file = cases::shipped / "pinched_tube.json";
   for (const char* method : {"monolithic_al", "uzawa_al"}) {
     const auto whole = cases::run(scene, {{method, json::object()}}, file);
     const auto part = cases::run(quarter, {{method, json::object()}}, file);
@@ -278,8 +276,8 @@ TEST(ShippedScenes, OfADieThatIronsTakeFewIterationsByEveryMethod) {
   // 51 (with 13 factors of the bodies), 73 and 154 in six steps; 169 by penalty and 2628 by Uzawa where Newton's method
   // stood alone
   for (const auto& [method, most] : {std::pair{"monolithic_al", 60}, {"penalty", 100}, {"uzawa_al", 200}}) {
-    const auto result = cases::run(cases::load(folder_of_shipped / "ironing.json"), {{method, json::object()}},
-                                   folder_of_shipped / "ironing.json");
+    const auto result = cases::run(cases::load(cases::shipped / "ironing.json"), {{method, json::object()}},
+                                   cases::shipped / "ironing.json");
     ASSERT_TRUE(is_converged(result.status())) << method << result.message();
     EXPECT_LE(newton_iterations(result), most) << method;
   }
@@ -287,7 +285,7 @@ TEST(ShippedScenes, OfADieThatIronsTakeFewIterationsByEveryMethod) {
 
 /// The scene of the strip, without its fields and parameters.
 json bending(double yield = 200) {
-  json scene = cases::load(folder_of_shipped / "bending.json");
+  json scene = cases::load(cases::shipped / "bending.json");
   scene["bodies"]["strip"]["material"]["j2_plastic"]["yield"] = yield;
   scene.erase("output");
   scene["parameters"] = json::object();
@@ -296,7 +294,7 @@ json bending(double yield = 200) {
 
 TEST(ShippedScenes, OfABentStripSpringBackAndHardlyHangOnMethodAndSteps) {
   const json monolithic = {{"monolithic_al", json::object()}};
-  const auto reference = cases::run(bending(), monolithic, folder_of_shipped / "bending.json");
+  const auto reference = cases::run(bending(), monolithic, cases::shipped / "bending.json");
   ASSERT_TRUE(is_converged(reference.status())) << reference.message();
   const auto depth = history(reference, "depth"), force = history(reference, "force");
   EXPECT_NEAR(depth[59], -4, 0.01);
@@ -305,7 +303,7 @@ TEST(ShippedScenes, OfABentStripSpringBackAndHardlyHangOnMethodAndSteps) {
   EXPECT_EQ(force.back(), 0);
   const auto end = history(reference, "end").back();
   const auto compare = [&](const json& scene, const json& method, double largest) {
-    const auto result = cases::run(scene, method, folder_of_shipped / "bending.json");
+    const auto result = cases::run(scene, method, cases::shipped / "bending.json");
     ASSERT_TRUE(is_converged(result.status())) << method << result.message();
     EXPECT_NEAR(history(result, "end").back(), end, largest * end) << method;
     EXPECT_EQ(result.trajectory.counters.cutbacks, 0) << method;
@@ -323,7 +321,7 @@ TEST(ShippedScenes, OfABentStripHaveTheDerivativesOfDifferences) {
   const auto result = run("bending");
   const double h = 200 * 1e-5;  // (ten times as much lets a node touch a step earlier)
   const auto end = [&](double yield) {
-    return history(cases::run(bending(yield), monolithic, folder_of_shipped / "bending.json"), "end").back();
+    return history(cases::run(bending(yield), monolithic, cases::shipped / "bending.json"), "end").back();
   };
   const double by_yield = (end(200 + h) - end(200 - h)) / (2 * h);  // 4e-9 apart: steps are solved to 1e-10 / 1e-5
   EXPECT_NEAR(value_of(result, "end/yield"), by_yield, 1e-6 * std::abs(by_yield));

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/studies/cases.hpp"
 #include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip {
@@ -176,9 +177,7 @@ TEST_F(StudyCell, RowsHoldTheResponsesOfEveryStep) {
 
 /// The shipped study of the belt: its tensions and, node by node, its tractions are those of the polygon.
 TEST_F(StudyCell, TheBeltIsHeldAgainstItsClosedForm) {
-  const auto scenes = std::filesystem::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
-  json scene = json::parse(std::ifstream(scenes / "belt.json"), nullptr, true, true),
-       shipped = json::parse(std::ifstream(scenes / "belt.study.json"), nullptr, true, true);
+  json scene = cases::load(cases::shipped / "belt.json"), shipped = cases::load(cases::shipped / "belt.study.json");
   shipped["methods"] = {{{"monolithic_al", json::object()}}};
   shipped.erase("timing");
   const auto [study, cells] = read(scene, shipped);

@@ -21,8 +21,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-const fs::path folder = fs::path(STICKSLIP_SOURCE_DIR) / "studies" / "scenes";
-
 /// A solution and result.json, as files hold them.
 struct Solved {
   json solution, result;
@@ -30,7 +28,7 @@ struct Solved {
 
 Solved solve(json document, const std::string& method = "") {
   if (!method.empty()) document["method"] = {{method, json::object()}};
-  const Simulation simulation{cases::read(document, folder / "scene.json"), nullptr};
+  const Simulation simulation{cases::read(document, cases::shipped / "scene.json"), nullptr};
   const auto problem = std::make_shared<const Problem>(simulation.input.scene);
   const CaseResult result = simulate({simulation.input, problem});
   return {json::parse(solution_file(result, simulation.input.document).text),
@@ -199,7 +197,7 @@ class ShippedScene : public testing::TestWithParam<const char*> {};
 TEST_P(ShippedScene, HoldsByEachMethod) {
   for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) {
     SCOPED_TRACE(method);
-    expect_holds(solve(cases::load(folder / (std::string(GetParam()) + ".json")), method));
+    expect_holds(solve(cases::load(cases::shipped / (std::string(GetParam()) + ".json")), method));
   }
 }
 
@@ -301,7 +299,7 @@ TEST(Verify, TellsTheMomentThatAContactLeaves) {
 /// Of a path by arc length no times are asked for; a solution without a state is none all the same.
 TEST(Verify, DoesNotHoldOfASolutionWithoutAState) {
   for (const char* name : {"snap", "stop"}) {
-    const Solved solved = solve(cases::load(folder / (std::string(name) + ".json")));
+    const Solved solved = solve(cases::load(cases::shipped / (std::string(name) + ".json")));
     json empty = solved.solution;
     empty["increments"] = json::array();
     const auto judged = verify::certify(empty.at("scene"), empty.at("mesh"), empty, json::object());
@@ -311,7 +309,7 @@ TEST(Verify, DoesNotHoldOfASolutionWithoutAState) {
 }
 
 TEST(Verify, FindsForcesWhereAProgramGivesNone) {
-  Solved solved = solve(cases::load(folder / "greco_plate.json"), "monolithic_al");
+  Solved solved = solve(cases::load(cases::shipped / "greco_plate.json"), "monolithic_al");
   for (auto& increment : solved.solution["increments"]) increment.erase("contacts");
   expect_holds(solved);
 }
@@ -333,7 +331,7 @@ TEST(Verify, MatchesNodesOfAnotherProgramByTheirPlaces) {
                       {"method", {{"monolithic_al", json::object()}}}};
   const TemporaryFolder own_folder;
   const fs::path& directory = own_folder.path;
-  const Simulation simulation{cases::read(scene, folder / "scene.json"), nullptr};
+  const Simulation simulation{cases::read(scene, cases::shipped / "scene.json"), nullptr};
   const Simulation made{simulation.input, std::make_shared<const Problem>(simulation.input.scene)};
   write_result(directory, made, simulate(made));
   std::ifstream in(directory / "solution.json");
@@ -354,7 +352,7 @@ TEST(Verify, MatchesNodesOfAnotherProgramByTheirPlaces) {
 }
 
 TEST(Verify, RefusesWhatDoesNotFit) {
-  Solved solved = solve(cases::load(folder / "slider.json"));
+  Solved solved = solve(cases::load(cases::shipped / "slider.json"));
   Solved shorter = solved;
   shorter.solution["increments"][0]["displacement"].erase(0);
   EXPECT_THROW(certificate(shorter), verify::BadFile);
@@ -384,7 +382,7 @@ json scene_of(const std::string& base) {
   if (base == "segments") return two_blocks("finite", "faceted", "segment");
   if (base == "barrel") return on_barrel("H8", "smooth");
   if (base == "polyline") return on_obstacle("finite", polyline, "node");
-  return cases::load(folder / (base + ".json"));
+  return cases::load(cases::shipped / (base + ".json"));
 }
 
 json& last(Solved& solved) { return solved.solution["increments"].back(); }

@@ -212,8 +212,8 @@ TEST(Warnings, SayNothingOfASingleNodeThatIsMeant) {
   document["supports"][0]["on"] = "roller.top";
   document["contacts"]["touch"]["slave"] = "roller.bottom & roller.left";
   EXPECT_THAT(warnings(document), IsEmpty());
-  EXPECT_THAT(warnings_of(cases::run(cases::load(std::string(STICKSLIP_SOURCE_DIR) + "/studies/scenes/slider.json"),
-                                     {{"monolithic_al", json::object()}}, "slider.json")),
+  EXPECT_THAT(warnings_of(cases::run(cases::load(cases::shipped / "slider.json"), {{"monolithic_al", json::object()}},
+                                     "slider.json")),
               IsEmpty());
 }
 
