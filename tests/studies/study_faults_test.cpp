@@ -234,7 +234,7 @@ TEST_F(StudyFaults, OfOneOfSeveralScenesNameIt) {
 }
 
 TEST_F(StudyFaults, OfSeveralScenesWithoutMethodsAreToldOnce) {
-  write("other.json", edited(scene_text, "block", "blocks"));
+  write("other.json", edited(scene_text, R"("title": "block")", R"("title": "blocks")"));
   EXPECT_FALSE(read(R"({"scenes": ["scene.json", "other.json"]})"));
   EXPECT_THAT(diagnostics_.text(), testing::EndsWith("a study of several scenes needs it\n"));
 }

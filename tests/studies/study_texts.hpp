@@ -1,17 +1,18 @@
 /// A study as its file holds it, with its scene, for tests that read them as they are or with an edit.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "studies/sweep/cell_inputs.hpp"
+#include "tests/studies/scene_texts.hpp"
 #include "tests/studies/temporary_folder.hpp"
 
 namespace stickslip::study_texts {
+
+using scene_texts::edited;
 
 inline constexpr const char* scene_text = R"({
   "title": "block",
@@ -73,13 +74,6 @@ class StudyFolder : public InOwnFolder {
   Diagnostics diagnostics_;
   MeshFiles mesh_files_;
 };
-
-/// The text with `from` replaced.
-inline std::string edited(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
 
 /// The scene without the parameter on penalty's stiffness, which has to be a number there.
 inline std::string without_stiffness_parameter() {
