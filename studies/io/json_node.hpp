@@ -73,7 +73,7 @@ class JsonNode {
   std::optional<std::string> text() const;
   std::optional<std::string> choice(const std::vector<std::string>& allowed,
                                     const std::vector<std::string>& later = {}) const;
-  /// The value of an enumeration that one of its words, in its order, stands for; of another text `to` stays.
+  /// Sets an enumerator by its word; the words are in the order of the enumeration. Any other text is reported.
   template <class E, std::size_t n>
   void word(E& to, const std::array<const char*, n>& words) const {
     const auto given = choice({words.begin(), words.end()});
