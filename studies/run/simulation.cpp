@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "methods/stepping/checkpoints.hpp"
 #include "methods/stepping/engine_choice.hpp"
 #include "studies/input/size_estimate.hpp"
 #include "studies/io/printing.hpp"

@@ -9,6 +9,7 @@
 #include "core/model/element_nodes.hpp"
 #include "core/solids/shapes.hpp"
 #include "methods/newton/residuals.hpp"
+#include "methods/stepping/checkpoints.hpp"
 #include "methods/stepping/diagnosis.hpp"
 #include "sensitivity/force_search.hpp"
 #include "studies/io/wording.hpp"
