@@ -32,18 +32,23 @@ Bulge<T, S> bulge_of(const std::array<int, 3>& edge, Position&& position) {
   return bulge;
 }
 
-/// Solves way = s straight + s (1 - s) bent for s: of the two solutions that at which way grows as it does without
-/// `bent`. Two Newton steps in T from it, in numbers, carry its derivatives. Where the curve turns back before it goes
-/// so far, nothing is there; then the place on the straight facet.
+/// The way from the coordinate `from` along a curve, in that coordinate, to where it has gone by `way`: solves
+///
+///   way = shift straight + s (1 - s) bent,   s = from + shift
+///
+/// for shift, which keeps the digits of a small way. Of the two solutions it is that at which way grows as it does
+/// without `bent`. Two Newton steps in T from it, in numbers, carry its derivatives. Where the curve turns back before
+/// it goes so far, nothing is there; then the place on the straight facet.
 template <class T>
-T along_bulge(const T& way, const T& straight, const T& bent) {
-  const double slope = value(straight) + value(bent), square = slope * slope - 4 * value(bent) * value(way);
+T along_bulge(const T& from, const T& way, const T& straight, const T& bent) {
+  const T rest = way - from * (T(1) - from) * bent, slope = straight + (T(1) - T(2) * from) * bent;
+  const double square = value(slope) * value(slope) - 4 * value(bent) * value(rest);
   if (square <= 0) return way / straight;
-  const double root = std::copysign(std::sqrt(square), value(straight));  // the slope there
-  const bool alike = slope == 0 || (slope > 0) == (root > 0);             // (else it would cancel)
-  auto s = T(alike ? 2 * value(way) / (slope + root) : (slope - root) / (2 * value(bent)));
-  for (int k = 0; k < 2; ++k) s += (way - s * straight - s * (T(1) - s) * bent) / (straight + (T(1) - T(2) * s) * bent);
-  return s;
+  const double root = std::copysign(std::sqrt(square), value(straight));     // the slope there
+  const bool alike = value(slope) == 0 || (value(slope) > 0) == (root > 0);  // (else it would cancel)
+  auto shift = T(alike ? 2 * value(rest) / (value(slope) + root) : (value(slope) - root) / (2 * value(bent)));
+  for (int k = 0; k < 2; ++k) shift += (rest - shift * (slope - shift * bent)) / (slope - T(2) * shift * bent);
+  return shift;
 }
 
 /// Coordinate of a segment's end along the slave facet: 0 at its first node a, 1 at its second. `tau`: vector from a to
@@ -53,7 +58,7 @@ T end_coordinate(int segment_end, Position&& position, const Place& a, const Vec
   if (segment_end == Segment::start) return T(0);
   if (segment_end == Segment::end) return T(1);
   const T way = dot(Vec<T, 2>(position(segment_end) - a), tau), straight = dot(tau, tau);
-  return bulge.is_curved ? along_bulge<T>(way, straight, dot(bulge.now(), tau)) : T(way / straight);
+  return bulge.is_curved ? along_bulge<T>(T(0), way, straight, dot(bulge.now(), tau)) : T(way / straight);
 }
 
 /// A point of a slave facet.
@@ -169,8 +174,8 @@ Foot<T> foot_on_facet(const FacingFacets<T, S>& facets, const T& s, const Vec<T,
   foot.tangent = facets.facet;
   if (facets.bulge.is_curved) {
     const Vec<T, 2> d = facets.bulge.now();
-    foot.eta = along_bulge<T>(foot.E * straight + way, straight, dot(d, facets.tau));
-    foot.shift = foot.eta - foot.E;
+    foot.shift = along_bulge<T>(foot.E, way, straight, dot(d, facets.tau));
+    foot.eta = foot.E + foot.shift;
     foot.off -= foot.shift * facets.facet + foot.eta * (T(1) - foot.eta) * d;
     foot.tangent += (T(1) - T(2) * foot.eta) * d;
   } else {
