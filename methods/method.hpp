@@ -2,7 +2,7 @@
 /// (methods/stepping/increment.hpp).
 #pragma once
 
-#include "methods/stepping/run.hpp"
+#include "methods/stepping/run_options.hpp"
 
 namespace stickslip {
 

@@ -1,4 +1,4 @@
-#include "methods/rescue/sequential.hpp"
+#include "methods/rescue/find_equilibrium.hpp"
 
 namespace stickslip {
 

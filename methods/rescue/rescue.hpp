@@ -3,8 +3,9 @@
 ///   1  rest      bodies that float are moved to rest, and with them all that supports alone do not hold
 ///                (methods/rescue/motion.hpp): a singular tangent would send them anywhere
 ///   2  method    the method itself, from the last state. Its equilibria are sought by Newton's method, by the sequence
-///                of linear problems, and by Newton's method again (methods/rescue/sequential.hpp). A solution ends the
-///                search, unless there may be several; so does what supports drive into one another: infeasible
+///                of linear problems, and by Newton's method again (methods/rescue/find_equilibrium.hpp). A solution
+///                ends the search, unless there may be several; so does what supports drive into one another:
+///                infeasible
 ///   3  statics   loads that no contact can balance (methods/rescue/statics.hpp): no_equilibrium
 ///   4  branches  of few points all combinations (methods/rescue/all_branches.hpp). If there is no solution:
 ///                no_equilibrium, or infeasible where points penetrate whatever bodies do. Else the method starts again
@@ -18,7 +19,8 @@
 /// The levels below and above an increment:
 ///
 ///   corner       points that go to and fro between two patches are kept on one (methods/newton/kept_patches.hpp)
-///   equilibrium  Newton's method, the sequence, Newton's method with all its iterations (find_equilibrium)
+///   equilibrium  Newton's method, the sequence, Newton's method with all its iterations
+///                (methods/rescue/find_equilibrium.hpp)
 ///   step         parts, down to 1/1024 (methods/stepping/step.hpp). What all of them spend in vain is bounded
 ///                (methods/rescue/work_bound.hpp)
 ///   path         arcs are shortened (methods/stepping/path.hpp); of this page only an increment at t = 0 is tried
@@ -33,6 +35,12 @@
 #include "methods/stepping/prescribed.hpp"
 
 namespace stickslip {
+
+/// What is tried where the method alone finds nothing.
+enum class Rescue {
+  all,       ///< 3 to 6 above
+  no_motion  ///< 3 alone
+};
 
 namespace detail {
 
@@ -49,13 +57,13 @@ template <class T>
 class IncrementSearch {
  public:
   IncrementSearch(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double time,
-                  const WorkBound& bound, bool may_move)
+                  const WorkBound& bound, Rescue rescue)
       : run_(run),
         previous_(previous),
         factor_(factor),
         time_(time),
         bound_(bound),
-        may_move_(may_move),
+        rescue_(rescue),
         rescues_(!run.model.points.empty() && is_globalised(run.method)),
         before_(run.account.scales) {}
 
@@ -100,7 +108,7 @@ class IncrementSearch {
     return prescribed || (solved() && (!several() || found_.cut_off));
   }
 
-  bool in_vain() const { return bound_.is_spent() || !may_move_ || crosses(); }
+  bool in_vain() const { return bound_.is_spent() || rescue_ == Rescue::no_motion || crosses(); }
 
   Increment<T> failed(Status status, std::string message) {
     found_.status = status;
@@ -156,7 +164,7 @@ class IncrementSearch {
   const std::vector<double>& factor_;
   double time_;
   const WorkBound& bound_;
-  bool may_move_;
+  Rescue rescue_;
   bool rescues_;            ///< whether there is more than the method alone
   const RunScales before_;  ///< of the run; attempts that fail leave no trace in them
   Increment<T> found_;      ///< by the method alone
@@ -164,12 +172,12 @@ class IncrementSearch {
 
 }  // namespace detail
 
-/// One increment from `previous` to `time`; `factor`: adaption of rho so far. `may_move`: whether the motion stands in
-/// where the method alone finds nothing. `bound`: of the step that it is a part of, begun.
+/// One increment from `previous` to `time`; `factor`: adaption of rho so far; `bound`: of the step that it is a part
+/// of, begun.
 template <class T>
 Increment<T> find_increment(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double time,
-                            const WorkBound& bound, bool may_move = true) {
-  return detail::IncrementSearch<T>(run, previous, factor, time, bound, may_move).find();
+                            const WorkBound& bound, Rescue rescue = Rescue::all) {
+  return detail::IncrementSearch<T>(run, previous, factor, time, bound, rescue).find();
 }
 
 }  // namespace stickslip

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "methods/stepping/increment.hpp"
-#include "methods/stepping/run.hpp"
+#include "methods/stepping/run_options.hpp"
 
 namespace stickslip {
 
@@ -62,9 +62,9 @@ class Checkpoints {
     EngineMemory<T> engine;
   };
 
-  /// `times`: ends of the steps; `may_cut`: whether a step that fails is cut.
-  Checkpoints(CheckpointPlan plan, std::vector<double> times, bool may_cut)
-      : plan_(plan), may_cut_(may_cut), times_(std::move(times)) {}
+  /// `times`: ends of the steps; `steps`: what became of those that failed.
+  Checkpoints(CheckpointPlan plan, std::vector<double> times, Steps steps)
+      : plan_(plan), steps_(steps), times_(std::move(times)) {}
 
   /// Records the run after each step, and once before the first. Thins the states of the previous step.
   void pass(const Run<T>& run, Trajectory<T>& trajectory) {
@@ -83,7 +83,7 @@ class Checkpoints {
 
   const CheckpointPlan& plan() const { return plan_; }
   const std::vector<double>& times() const { return times_; }
-  bool may_cut() const { return may_cut_; }
+  Steps steps() const { return steps_; }
   Uniqueness uniqueness() const { return uniqueness_; }
   const std::shared_ptr<Condensation<T>>& condensation() const { return condensation_; }
   /// Number of increments up to the end of a step.
@@ -114,7 +114,7 @@ class Checkpoints {
   }
 
   CheckpointPlan plan_;
-  bool may_cut_;
+  Steps steps_;
   Uniqueness uniqueness_ = Uniqueness::unique;
   std::vector<double> times_;
   std::vector<std::size_t> ends_;

@@ -4,7 +4,7 @@
 #include "core/engine/condensed_tangent.hpp"
 #include "core/engine/engine_price.hpp"
 #include "core/engine/sparse_system.hpp"
-#include "methods/stepping/run.hpp"
+#include "methods/stepping/run_options.hpp"
 
 namespace stickslip {
 

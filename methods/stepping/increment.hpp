@@ -22,6 +22,12 @@ enum class Uniqueness {
   several    ///< some are negative: under some loads there are several
 };
 
+/// What becomes of a step that finds no solution.
+enum class Steps {
+  cut,   ///< it is cut into parts
+  whole  ///< it fails: of a path that is repeated, whose parts are known
+};
+
 /// A run in progress: the immutable problem, the engine, and what is carried from increment to increment.
 template <class T>
 struct Run {

@@ -1,5 +1,16 @@
 /// Runs of any method and scalar: steps in time, or along a path. solve_in() is the template, which the oracle of the
 /// tests instantiates in complex numbers. solve() of methods/method.hpp is solve_in() in double.
+///
+/// The way of the state through one step:
+///
+///   march             reads the last state, Trajectory::last(), and asks for each time of the scene
+///   StepInParts       cuts the step into parts if it must                      methods/stepping/step.hpp
+///   IncrementSearch   what is tried for a part, in which order                 methods/rescue/rescue.hpp
+///   solve_increment   the method: (u, lambda) of the last state -> the next    methods/penalty.hpp, uzawa.hpp, ...
+///   find_equilibrium  what is tried for one equilibrium                        methods/rescue/find_equilibrium.hpp
+///   newton            iterates; its solution has u, lambda and ContactField    methods/newton/newton.hpp
+///   settle            makes the next State of them, with its History           methods/stepping/increment.hpp
+///   StepInParts       appends the increment to the trajectory
 #pragma once
 
 #include <stdexcept>
@@ -53,16 +64,17 @@ void march(const Method& method, const Model& model, const Slots<T>& slots, Engi
   run.account.trace = options.trace;
   trajectory.initial = initial_state<T>(model, slots);
   const bool repeats = !options.replay.empty();
+  const Steps steps = repeats ? Steps::whole : Steps::cut;
   const auto& times = repeats ? options.replay : model.times;
   workspace.checkpoints.reset();
   if (const auto plan = plan_checkpoints(model, options))
-    workspace.checkpoints = std::make_shared<Checkpoints<T>>(*plan, times, !repeats);
+    workspace.checkpoints = std::make_shared<Checkpoints<T>>(*plan, times, steps);
   if (workspace.checkpoints) workspace.checkpoints->pass(run, trajectory);
   std::optional<Path<T>> path;
   if (model.scene.arc_length) path.emplace(run, trajectory);
   const auto ended = [&](std::size_t n) { return path && !repeats ? path->ended() : n == times.size(); };
   const auto step = [&](std::size_t n) {
-    if (!path) return advance(run, trajectory, times[n], !repeats);
+    if (!path) return advance(run, trajectory, times[n], steps);
     return repeats ? path->repeat(times[n], options.guide) : path->advance();
   };
   bool reached = true;

@@ -39,7 +39,7 @@ Stretch<T> solve_again(const Method& method, const Model& model, const Slots<T>&
   if (before > 0) part.increments.push_back(trajectory.increments[stretch.first - 1]);
   const std::size_t last = checkpoints.last_step(start);
   for (std::size_t step = start.step + 1; step <= last; ++step)
-    advance(run, part, checkpoints.times()[step - 1], checkpoints.may_cut());
+    advance(run, part, checkpoints.times()[step - 1], checkpoints.steps());
   counters += run.account.counters;
   engine.restore(own, counters);
   part.increments.erase(part.increments.begin(), part.increments.begin() + static_cast<std::ptrdiff_t>(before));

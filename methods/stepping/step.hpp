@@ -88,13 +88,13 @@ long spent_on(const std::vector<Increment<T>>& increments) {
 template <class T>
 class StepInParts {
  public:
-  StepInParts(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut)
+  StepInParts(Run<T>& run, Trajectory<T>& trajectory, double target, Steps steps)
       : run_(run),
         trajectory_(trajectory),
         start_count_(trajectory.increments.size()),
         start_(trajectory.last_time()),
         target_(target),
-        may_cut_(may_cut),
+        steps_(steps),
         reached_(start_),
         length_(target - start_),
         bound_(run.model, run.account.counters, newton_of(run.method).max_iterations, spent_on(trajectory.increments),
@@ -125,19 +125,21 @@ class StepInParts {
     const double whole = target_ - start_;
     const bool is_last = reached_ + length_ >= target_ - 1e-9 * whole;
     const bool is_free = !run_.free.words.empty(), is_short = length_ < patient * whole;
-    const bool may_move = run_.model.effects.linear_bulk || !may_cut_ || is_free || is_short;
+    const bool moves = run_.model.effects.linear_bulk || steps_ == Steps::whole || is_free || is_short;
     next_ = is_last ? target_ : reached_ + length_;
     run_.start = reached_;
     bound_.begin();
     factor_ = trajectory_.last_factor();
-    auto part = find_increment(run_, trajectory_.last(), factor_, next_, bound_, may_move);
+    auto part =
+        find_increment(run_, trajectory_.last(), factor_, next_, bound_, moves ? Rescue::all : Rescue::no_motion);
     bound_.end(part.usable() ? equilibria_of(part) : 0);
     part.time = next_;
     part.requested = is_last;
     part.cutbacks = cutbacks_;
     refuse(run_, part);
     const int before = unresisted_before();
-    part.unresisted = may_cut_ ? motions_unresisted(run_, trajectory_.last(), part).value_or(before) : before;
+    part.unresisted =
+        steps_ == Steps::cut ? motions_unresisted(run_, trajectory_.last(), part).value_or(before) : before;
     return part;
   }
 
@@ -173,7 +175,8 @@ class StepInParts {
     easy_ = 0;
     length_ = (next_ - reached_) / 2;
     const bool vanishes = !(reached_ + length_ > reached_ && reached_ + length_ < next_);  // no number lies between
-    if (!may_cut_ || !helps || vanishes || bound_.is_spent() || length_ < smallest * (target_ - start_)) return false;
+    if (steps_ == Steps::whole || !helps || vanishes || bound_.is_spent() || length_ < smallest * (target_ - start_))
+      return false;
     ++cutbacks_;
     ++run_.account.counters.cutbacks;
     return true;
@@ -183,7 +186,7 @@ class StepInParts {
   Trajectory<T>& trajectory_;
   const std::size_t start_count_;  ///< increments before the step
   const double start_, target_;
-  const bool may_cut_;
+  const Steps steps_;
   double reached_, next_ = 0, length_;  ///< begin and end of the present part, length of the next
   int easy_ = 0, cutbacks_ = 0;         ///< parts in a row that succeeded; halvings
   bool buckles_ = false;                ///< whether a part was refused for the critical loads that it passed
@@ -193,14 +196,13 @@ class StepInParts {
   WorkBound bound_;
 };
 
-/// Advances the trajectory to the time `target` by a step, which is cut if it may be. False if it gave up; the failed
-/// increment is then the last.
+/// Advances the trajectory to the time `target` by a step. False if it gave up; the failed increment is then the last.
 template <class T>
-bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, bool may_cut) {
+bool advance(Run<T>& run, Trajectory<T>& trajectory, double target, Steps steps) {
   run.free = {};
   if (!run.model.effects.linear_bulk)
     run.free = free_bodies(run.model, run.slots, trajectory.last(), trajectory.increments.empty());
-  return StepInParts<T>(run, trajectory, target, may_cut).advance();
+  return StepInParts<T>(run, trajectory, target, steps).advance();
 }
 
 }  // namespace detail

@@ -4,7 +4,7 @@
 
 #include "core/model/response.hpp"
 #include "methods/all_methods.hpp"
-#include "methods/rescue/sequential.hpp"
+#include "methods/rescue/find_equilibrium.hpp"
 #include "methods/stepping/solve.hpp"
 #include "tests/support/carried_complex.hpp"
 #include "tests/support/compiled_slots.hpp"
