@@ -47,7 +47,7 @@ bool no_smaller_step_helps(const Run<T>& run, double start, double end, const In
   return drives_together(run, start, end, failed);
 }
 
-/// Ends a step to the time `target` that found no solution: the increment that failed first is then the last.
+/// Ends a step to the time `target` that found no solution: the failed increment is then the last.
 template <class T>
 void give_up(const Run<T>& run, double target, const WorkBound& bound, Increment<T> failed,
              std::vector<Increment<T>>& increments) {
@@ -171,7 +171,8 @@ class StepInParts {
   bool halve(Increment<T> part, bool is_refused) {
     constexpr double smallest = 1.0 / 1024;
     const bool helps = is_refused || !no_smaller_step_helps(run_, reached_, next_, part);
-    if (!failed_ && !is_refused) failed_ = std::move(part);
+    const bool is_folded = part.status == Status::inverted_element;  // an equilibrium, and why it is none: says most
+    if (!is_refused && (!failed_ || (is_folded && failed_->status != part.status))) failed_ = std::move(part);
     easy_ = 0;
     length_ = (next_ - reached_) / 2;
     const bool vanishes = !(reached_ + length_ > reached_ && reached_ + length_ < next_);  // no number lies between
@@ -192,7 +193,7 @@ class StepInParts {
   bool buckles_ = false;                ///< whether a part was refused for the critical loads that it passed
   RunScales scales_;                    ///< where the present part begins, as is the adaption of rho:
   std::vector<double> factor_;
-  std::optional<Increment<T>> failed_;  ///< the first part that failed
+  std::optional<Increment<T>> failed_;  ///< the first part that failed, or the first that is folded
   WorkBound bound_;
 };
 
