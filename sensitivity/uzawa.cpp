@@ -223,7 +223,7 @@ bool differentiate_augmentations(const UzawaAL& method, Differentiation& problem
     linearised.store_state(lambda);
     update_derivatives(lambda, linearised.fields());
   }
-  problem.record = {.passes = static_cast<int>(increment.augmented.size())};
+  problem.record = SchemeRecord{.passes = static_cast<int>(increment.augmented.size())};
   return true;
 }
 
