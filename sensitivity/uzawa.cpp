@@ -326,7 +326,7 @@ bool UzawaAL::differentiate_increment(Differentiation& problem, const State<doub
   auto lambda = carried_multiplier(problem, equilibrium.state().multiplier);
   if (sensitivity == Sensitivity::oversized) {
     if (!linearised.solve(lambda)) return false;
-    problem.record = {.passes = 1};
+    problem.record = SchemeRecord{.passes = 1};
   } else if (!iterate(problem, linearised, equilibrium.rho, lambda, tolerance)) {
     if (problem.status == Status::cap && !preconditioned) problem.message += other_scheme;
     return false;
