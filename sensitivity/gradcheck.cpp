@@ -123,7 +123,7 @@ std::optional<OneSided> sides_of(const Model& model, const Slots<double>& slots,
                                  const Gradients& gradients) {
   auto sides = one_sided_derivatives(model, slots, method, trajectory, workspace);
   if (!sides && !gradients.from_below.empty()) sides = OneSided{gradients.from_below, gradients.from_above};
-  if (!model.slides_along_curves() || (sides && sides->backward.empty())) return sides;
+  if (!model.slides_on_surfaces() || (sides && sides->backward.empty())) return sides;
   WholeStates states(model, slots, method, trajectory, workspace);
   for (std::size_t n = 0; n < states.count(); ++n) {
     const auto& increment = states.increment(n);

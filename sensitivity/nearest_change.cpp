@@ -182,7 +182,7 @@ void lower_nearest_change(const Model& model, const Slots<double>& slots, const 
   ChangeReader reader(model, slots, increment, nearest);
   reader.read_contact();
   if (model.effects.plasticity) reader.read_flow();
-  model.slides_along_curves() ? reader.read_vertices() : reader.read_facets();
+  model.slides_on_surfaces() ? reader.read_vertices() : reader.read_facets();
 }
 
 }  // namespace stickslip

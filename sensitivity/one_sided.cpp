@@ -63,7 +63,7 @@ bool has_tied_responses(const Model& model, const Slots<double>& slots, WholeSta
 std::size_t first_tie(const Model& model, const Slots<double>& slots, const Method& method,
                       const Trajectory<double>& trajectory, WholeStates& states) {
   const auto scales = traction_scales(model, slots, trajectory);
-  const bool contact_decides = !model.effects.plasticity && !model.slides_along_curves();  // and thin states have it
+  const bool contact_decides = !model.effects.plasticity && !model.slides_on_surfaces();  // and thin states have it
   std::size_t n = 0;
   for (; n < scales.size(); ++n) {
     const auto& increment = contact_decides ? trajectory.increments[n] : states.increment(n);

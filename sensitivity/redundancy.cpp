@@ -242,8 +242,8 @@ ForceSearch::ForceSearch(const Model& model, const Slots<double>& slots)
   for (const auto& point : model.points) {
     ++as_slave[point.nodes[0]];
     for (std::size_t n = point.slave_nodes; n < point.nodes.size(); ++n) ++as_master[point.nodes[n]];
-    if (point.curve >= 0)
-      for (int node : model.curves[point.curve].nodes) ++as_master[node];
+    if (point.surface >= 0)
+      for (int node : model.surfaces[point.surface].nodes) ++as_master[node];
   }
   const auto yields = [&](int node) {
     const auto first = model.free_index.begin() + static_cast<long>(node) * model.dimension;

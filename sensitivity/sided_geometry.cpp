@@ -15,7 +15,7 @@ namespace {
 /// Whether a point may come to face another part of its master: it is at a vertex, or its segment ends there.
 bool may_leave(const ContactPoint& point) {
   using Master = ContactPoint::Master;
-  if (point.master == Master::segments) return point.curve < 0 && point.segments[0].master[0] != Segment::none;
+  if (point.master == Master::segments) return point.surface < 0 && point.segments[0].master[0] != Segment::none;
   return point.master == Master::facet || point.master == Master::vertex || point.master == Master::faces;
 }
 
@@ -112,7 +112,7 @@ bool meets(const PointGeometry<Direction>& a, const PointGeometry<Direction>& b,
 }  // namespace
 
 SidedPairing sided_pairing(const Model& model, int parameter, double side) {
-  constexpr double step = 1e-7, beyond_end = 2e-6;  // widths: a vertex 1e-9 (core/contact/curve.hpp), a free end 1e-6
+  constexpr double step = 1e-7, beyond_end = 2e-6;  // widths: a vertex 1e-9 (at_facet_end), a free end 1e-6
   SidedPairing out;
   if (std::none_of(model.points.begin(), model.points.end(), may_leave)) return out;
   const auto numbers = seeded(model.scene, {parameter});

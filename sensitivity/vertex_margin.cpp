@@ -16,22 +16,19 @@ namespace {
 
 using Place = Vec<double, 2>;
 
-bool is_facet(const Patch& patch) { return patch.smoothing == Smoothing::none; }
-
 /// Least distance of a point from an end of the patch that it faces, over the length of the patch, of ends at which the
 /// sine of the angle between the patches is at least `turn`. `place(vertex)`: from the point.
 template <class Places>
-double least_way(const std::vector<Patch>& patches, int faced, double turn, Places&& place) {
+double least_way(const Surface<2>& patches, int faced, double turn, Places&& place) {
   const auto along = [&](int patch) -> Place {
-    const auto& ends = patches[patch].vertices;
-    return place(ends[2]) - place(ends[1]);
+    return place(patches[patch].corner(1)) - place(patches[patch].corner(0));
   };
   double least = std::numeric_limits<double>::infinity();
   const double length = along(faced).norm();
   for (const int side : {0, 1}) {
-    const int other = side == 0 ? patches[faced].previous : patches[faced].next;
-    if (other == Patch::none) continue;
-    const Place vertex = place(patches[faced].vertices[1 + side]);
+    const int other = patches[faced].across[side];
+    if (other == no_patch) continue;
+    const Place vertex = place(patches[faced].corner(side));
     const Place a = along(faced).normalized(), b = along(other).normalized(), half = (a + b).normalized();
     if (std::abs(a[0] * b[1] - a[1] * b[0]) < turn) continue;
     least = std::min(least, std::abs(vertex.dot(half)) / length);
@@ -43,7 +40,7 @@ double least_way(const std::vector<Patch>& patches, int faced, double turn, Plac
 std::vector<int> ends_of_slave(const Model& model, int curve) {
   std::set<std::array<int, 2>> facets;
   for (const auto& point : model.points)
-    if (point.curve == curve)
+    if (point.surface == curve)
       for (const auto& facet : point.segments) facets.insert(facet.slave);
   std::map<int, int> count;
   for (const auto& facet : facets)
@@ -57,13 +54,13 @@ std::vector<int> ends_of_slave(const Model& model, int curve) {
 /// Whether an integrated curve turns at a node, or its two facets there are stretched differently. `present(node)`,
 /// `of_start(node)`: present and initial position.
 template <class At, class OfStart>
-bool has_kink_at(const MasterCurve& curve, int node, At&& present, OfStart&& of_start) {
+bool has_kink_at(const MasterSurface& curve, int node, At&& present, OfStart&& of_start) {
   const auto along = [&](int patch, const auto& where) -> Place {
     return where(curve.facets[patch][1]) - where(curve.facets[patch][0]);
   };
   for (std::size_t f = 0; f < curve.facets.size(); ++f) {
-    const int next = curve.patches[f].next;
-    if (curve.facets[f][1] != node || next == Patch::none) continue;
+    const int next = curve.patches<2>()[f].across[1];
+    if (curve.facets[f][1] != node || next == no_patch) continue;
     const Place a = along(static_cast<int>(f), present), b = along(next, present);
     const double stretch = a.norm() / along(static_cast<int>(f), of_start).norm(),
                  other = b.norm() / along(next, of_start).norm();
@@ -83,14 +80,14 @@ void for_each_way(const Model& model, const Slots<double>& slots, const State<do
   const auto positions = detail::positions_at(model, slots, compact, time);
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
-    if (point.curve < 0 || reached.contact.state[p] == ContactState::open) continue;
-    const auto& curve = model.curves[point.curve];
+    if (point.surface < 0 || reached.contact.state[p] == ContactState::open) continue;
+    const auto& curve = model.surfaces[point.surface];
     if (curve.is_integrated()) continue;
     const int faced = reached.contact.facing[p].patch;
-    if (faced == Patch::none || !is_facet(curve.patches[faced])) continue;
+    if (faced == no_patch || curve.patches<2>()[faced].is_smooth()) continue;
     const Placed<double> x = positions.slave(point);
-    f(static_cast<int>(p),
-      least_way(curve.patches, faced, turn, [&](int vertex) -> Place { return positions.vertex(curve, vertex) - x; }));
+    f(static_cast<int>(p), least_way(curve.patches<2>(), faced, turn,
+                                     [&](int vertex) -> Place { return positions.vertex(curve, vertex) - x; }));
   }
 }
 
@@ -100,9 +97,9 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
   double least = std::numeric_limits<double>::infinity();
   const Vector<double> compact = to_compact(model, state.displacement);
   const auto positions = detail::positions_at(model, slots, compact, time);
-  for (int c = 0; c < static_cast<int>(model.curves.size()); ++c) {
-    const auto& curve = model.curves[c];
-    if (!model.slides_along_curves() || !curve.is_integrated()) continue;
+  for (int c = 0; c < static_cast<int>(model.surfaces.size()); ++c) {
+    const auto& curve = model.surfaces[c];
+    if (!model.slides_on_surfaces() || !curve.is_integrated()) continue;
     const auto of_start = [&](int node) -> Place { return detail::start_of(model, curve.obstacle, slots, node); };
     const auto present = [&](int node) -> Placed<double> {
       if (node >= model.node_count) return positions.vertex_of_polyline(curve.obstacle, node - model.node_count);
@@ -113,7 +110,7 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
       return std::find(of.begin(), of.end(), node) != of.end();
     };
     for (std::size_t p = 0; p < model.points.size(); ++p) {
-      if (model.points[p].curve != c || state.contact.state[p] == ContactState::open) continue;
+      if (model.points[p].surface != c || state.contact.state[p] == ContactState::open) continue;
       for (const auto& segment : state.contact.facing[p].pieces) {
         const auto bulge = detail::bulge_of<double, double>(segment.slave_edge, present);
         for (int side : {0, 1})
@@ -130,12 +127,8 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
 }
 
 bool slides_along_facets(const Model& model) {
-  const auto has_facets = [](const MasterCurve& curve) {
-    const auto is_face = [](const SurfacePatch& patch) { return !patch.is_smooth(); };
-    return std::any_of(curve.patches.begin(), curve.patches.end(), is_facet) ||
-           std::any_of(curve.surface.begin(), curve.surface.end(), is_face);
-  };
-  return model.slides_along_curves() && std::any_of(model.curves.begin(), model.curves.end(), has_facets);
+  const auto has_facets = [](const MasterSurface& surface) { return surface.has_facets(); };
+  return model.slides_on_surfaces() && std::any_of(model.surfaces.begin(), model.surfaces.end(), has_facets);
 }
 
 double vertex_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time) {

@@ -45,12 +45,11 @@ std::vector<std::array<char, 4>> borders_of(const std::vector<std::vector<int>>&
 
 }  // namespace
 
-FaceSearch::FaceSearch(const Points<double>& points, const std::vector<std::vector<int>>& faces)
-    : FaceSearch(points, faces_of(faces), borders_of(faces)) {}
+FaceSearch::FaceSearch(Points<double> points, const std::vector<std::vector<int>>& faces)
+    : FaceSearch(std::move(points), faces_of(faces), borders_of(faces)) {}
 
-FaceSearch::FaceSearch(const Points<double>& points, std::vector<FacePlace> faces,
-                       std::vector<std::array<char, 4>> border)
-    : points_(points), faces_(std::move(faces)), border_(std::move(border)) {
+FaceSearch::FaceSearch(Points<double> points, std::vector<FacePlace> faces, std::vector<std::array<char, 4>> border)
+    : points_(std::move(points)), faces_(std::move(faces)), border_(std::move(border)) {
   std::vector<int> numbers;
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const auto& face = faces_[f];

@@ -13,9 +13,9 @@ namespace stickslip {
 class FaceSearch {
  public:
   /// `points`: nodal positions, 3 x nodes; `faces`: three or four nodes each, counter-clockwise seen from outside.
-  FaceSearch(const Points<double>& points, const std::vector<std::vector<int>>& faces);
+  FaceSearch(Points<double> points, const std::vector<std::vector<int>>& faces);
   /// `faces`: their nodes and corners; `border`: per face and edge, whether no other face has it.
-  FaceSearch(const Points<double>& points, std::vector<FacePlace> faces, std::vector<std::array<char, 4>> border);
+  FaceSearch(Points<double> points, std::vector<FacePlace> faces, std::vector<std::array<char, 4>> border);
 
   struct Near : NearestPlace {
     int face;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/contact/curve.hpp"
 #include "core/contact/segments.hpp"
 
 namespace stickslip {
@@ -28,6 +27,12 @@ bool precedes(const Foot& a, const Foot& b) {
 }
 
 }  // namespace
+
+FacetPlace nearest_of_facet(const Vec<double, 2>& a, const Vec<double, 2>& b, const Vec<double, 2>& x) {
+  const Vec<double, 2> tau = b - a;
+  const double xi = (x - a).dot(tau) / tau.squaredNorm();
+  return {xi, (x - a - std::clamp(xi, 0.0, 1.0) * tau).norm()};
+}
 
 std::optional<ClosestPoint> closest_point(const Points<double>& points, const std::vector<std::vector<int>>& facets,
                                           const std::vector<int>& among, const Vec<double, 2>& x) {

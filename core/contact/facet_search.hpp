@@ -15,6 +15,17 @@
 
 namespace stickslip {
 
+/// Share of a facet's length within which a projection counts as lying at the facet's end.
+inline constexpr double at_facet_end = 1e-9;
+
+/// The place of a facet that is nearest to a point.
+struct FacetPlace {
+  double xi;        ///< coordinate of the projection, which may lie past the ends: 0 at the first, 1 at the second
+  double distance;  ///< of the nearest place, length
+};
+/// `a`, `b`: ends of the facet.
+FacetPlace nearest_of_facet(const Vec<double, 2>& a, const Vec<double, 2>& b, const Vec<double, 2>& x);
+
 /// Closest point of a side. `second` < 0: inside facet `facet`, or at a free end that only this facet has. Otherwise at
 /// a vertex: `facet` ends there and `second` starts there.
 struct ClosestPoint {

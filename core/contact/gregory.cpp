@@ -61,7 +61,7 @@ struct Fan {
 
 class ControlPoints {
  public:
-  ControlPoints(std::vector<SurfacePatch>& patches, Smoothing smoothing, const std::vector<char>& is_corner)
+  ControlPoints(Surface<3>& patches, Smoothing smoothing, const std::vector<char>& is_corner)
       : patches_(patches), interpolates_(smoothing == Smoothing::catmull_rom), is_corner_(is_corner) {}
 
   void set() {
@@ -95,14 +95,14 @@ class ControlPoints {
   /// The patch behind the edge that begins, or with `turn` = -1 that ends, at a corner, where the surface is smooth.
   int beside(int f, int corner, int turn) const {
     const int n = patches_[f].corners, edge = turn > 0 ? (corner + n - 1) % n : corner;
-    return patches_[f].goes_on[edge] ? patches_[f].across[edge] : Patch::none;
+    return patches_[f].goes_on(edge) ? patches_[f].across[edge] : no_patch;
   }
 
   Fan make_fan(int f, int j) const {
     const int a = vertex(f, j);
     int first = f;
     Fan fan;
-    for (int next = beside(first, corner_of(first, a), -1); next != Patch::none;
+    for (int next = beside(first, corner_of(first, a), -1); next != no_patch;
          next = beside(first, corner_of(first, a), -1)) {
       first = next;
       if (first == f) break;
@@ -113,7 +113,7 @@ class ControlPoints {
       fan.spokes.push_back(vertex(last, corner_of(last, a) + 1));
       const int next = beside(last, corner_of(last, a), 1);
       fan.is_closed = next == first;
-      if (next == Patch::none || fan.is_closed) break;
+      if (next == no_patch || fan.is_closed) break;
       last = next;
     }
     if (!fan.is_closed) fan.spokes.push_back(vertex(last, corner_of(last, a) - 1));
@@ -246,7 +246,7 @@ class ControlPoints {
   }
 
   /// Sets the vertices and the matrix of a patch.
-  static void keep(const std::vector<Combination>& points, SurfacePatch& patch) {
+  static void keep(const std::vector<Combination>& points, Patch<3>& patch) {
     std::map<int, Eigen::Index> columns;
     for (int j = 0; j < patch.corners; ++j) columns[patch.vertices[j]] = j;
     for (const auto& point : points)
@@ -260,14 +260,14 @@ class ControlPoints {
         patch.control(static_cast<Eigen::Index>(c), columns[node]) = weight;
   }
 
-  std::vector<SurfacePatch>& patches_;
+  Surface<3>& patches_;
   bool interpolates_;
   const std::vector<char>& is_corner_;
 };
 
 }  // namespace
 
-void set_control_points(std::vector<SurfacePatch>& patches, Smoothing smoothing, const std::vector<char>& is_corner) {
+void set_control_points(Surface<3>& patches, Smoothing smoothing, const std::vector<char>& is_corner) {
   ControlPoints(patches, smoothing, is_corner).set();
 }
 

@@ -25,7 +25,7 @@ template <class T>
 Basis<T> gregory_basis(int corners, const T& s, const T& t);
 
 /// Sets the control points of patches that are joined: `across`, `goes_on`. Corners of borders: per vertex.
-void set_control_points(std::vector<SurfacePatch>& patches, Smoothing smoothing, const std::vector<char>& is_corner);
+void set_control_points(Surface<3>& patches, Smoothing smoothing, const std::vector<char>& is_corner);
 
 /// One function of two coordinates, with its slopes.
 template <class T>

@@ -7,7 +7,7 @@
 ///   ambiguous_at()     only if it has a place from which no part of it is nearer than another
 ///
 /// What it lacks does not compile. A polyline has facets in place of against(): which one a place faces is found by
-/// search (core/contact/facet_search.hpp, curve_search.hpp).
+/// search (core/contact/facet_search.hpp, surface_search.hpp).
 #pragma once
 
 #include <concepts>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/contact/curve.hpp"
+#include "core/contact/own_vertex.hpp"
 
 namespace stickslip {
 namespace {

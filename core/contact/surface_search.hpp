@@ -1,56 +1,150 @@
-/// Search for the closest place of a master surface in space, where its vertices are now.
+/// Search for the place of a master surface that a point faces, where its vertices are now.
+///
+/// The patch that is nearest to the point is found by its facet, in a tree of boxes. From there Newton's method finds
+/// the foot in double. It passes to the next patch where two patches join smoothly. What corners and creases are, and
+/// where a surface ends, differs between the dimensions.
+#pragma once
+
+#include "core/contact/box_tree.hpp"
+#include "core/contact/face_search.hpp"
+#include "core/contact/own_vertex.hpp"
+
+namespace stickslip {
+
+/// Share of a patch by which a foot may lie past the end of a surface that it still faces. Why: two sides that end
+/// together overlap only roughly. Example: two blocks pressed to 0.7 of their height; there the compliance of a
+/// penalty, or the first augmentation, moves the last node off its master and back for ever. In space the normal at a
+/// border is that of one side, so a node in a plane of symmetry, where a body is cut, projects a little past it.
+inline constexpr double past_end_of_surface = 0.01;
+
+template <int D>
+class PatchSearch;
+
+/// Search for what points face of a curve of the plane. It skips each box of facets that is too far away or whose
+/// normals do not oppose the slave side. So it visits few facets, also on a side in contact with itself, where the
+/// nearest facets belong to the point's own neighbourhood.
+///
+/// At a corner the curve continues as two straight lines that end in their bisector. So the gap is continuous there,
+/// and a corner has no contact state of its own: beyond a convex corner a point has the gap to the line on its side of
+/// the bisector.
+template <>
+class PatchSearch<2> {
+ public:
+  /// What a vertex of this curve faces, which is in contact with itself. A patch is eligible if its normal makes more
+  /// than 120 degrees with `outward`, and if `own` allows it. The vertex may penetrate a patch up to own.max_depth if
+  /// the patch is within 8 patches of `last`, the patch that it faced in the last state; otherwise up to a quarter of
+  /// that. If it faces nothing, the distance is the size of the curve, and the nearest patch is not looked for.
+  Facing facing_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
+  /// The patch nearest to such a vertex: the nearest eligible one; if there is none, the nearest that `own` allows.
+  int nearest_of_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
+
+ protected:
+  PatchSearch(const Surface<2>& patches, const Places<2>& positions);
+
+  /// The search's question: which place is nearest to x among the patches that oppose `outward`, if that is not zero?
+  /// `own`: set for contact of the curve with itself.
+  struct Query {
+    Vec<double, 2> x, outward;
+    const OwnVertex* own = nullptr;
+    int last = no_patch;
+  };
+  Facing nearest_facing(const Query& query) const;
+  Facing newton_foot(Facing from, const Vec<double, 2>& x, int hops) const;
+  double gap(const Facing& foot, const Vec<double, 2>& x) const;
+  Facing settled(const Facing& foot, const Query& query) const;
+  Facing facing_nothing(const Vec<double, 2>& x) const;
+  Vec<double, 2> middle_of(int) const { return {0.5, 0}; }
+
+ private:
+  struct Nearest {
+    int patch = no_patch;
+    double xi = 0, distance = std::numeric_limits<double>::infinity();
+  };
+  Vec<double, 2> vertex(int patch, int end) const { return positions_.col(patches_[patch].corner(end)); }
+  bool may_be_eligible(const Bounds<2>& box, const Query& query) const;
+  Nearest nearest_facet(const Query& query) const;
+  bool is_eligible(int patch, const Query& query) const;
+  void compare_facet(int patch, const Vec<double, 2>& x, Nearest& best) const;
+  Vec<double, 2> tangent_at_end(int patch, int end) const;
+  Facing past_end(const Facing& foot, const Query& query) const;
+
+  const Surface<2>& patches_;
+  const Places<2>& positions_;
+  BoxTree<2> facets_;  ///< from the start to the end of each patch; empty if a position is not finite
+  double band_ = 0;    ///< length within which two distances are equal
+  double size_ = std::numeric_limits<double>::infinity();  ///< diagonal of the box of the whole curve, length
+};
+
+/// Search for what points face of a surface in space.
 ///
 /// Beyond an edge at which the normal jumps its two patches go on, each along itself, and a point that projects into
 /// neither of them has the larger of the two gaps. So the gap is continuous there, and an edge has no contact state of
 /// its own. At a corner the same holds of all patches there. A patch that does not oppose the slave side is passed
 /// over: where it joins, the surface ends as at a border.
-#pragma once
+template <>
+class PatchSearch<3> {
+ protected:
+  PatchSearch(const Surface<3>& patches, const Places<3>& positions);
 
-#include "core/contact/face_search.hpp"
-#include "core/contact/surface.hpp"
+  struct Query {
+    Vec<double, 3> x, outward;
+  };
+  Facing nearest_facing(const Query& query) const;
+  Facing newton_foot(Facing at, const Vec<double, 3>& x, int hops) const;
+  double gap(const Facing& at, const Vec<double, 3>& x) const;
+  Facing facing_nothing(const Vec<double, 3>& x) const;
+  Vec<double, 2> middle_of(int patch) const {
+    return Vec<double, 2>::Constant(patches_[patch].corners == 3 ? 1.0 / 3 : 0.5);
+  }
 
-namespace stickslip {
+ private:
+  using Near = FaceSearch::Near;
+  bool is_eligible(int patch, const Query& query) const;
+  bool is_past_end(const Facing& at, const Query& query) const;
+  Facing beyond_edges(const Facing& at, const Query& query) const;
+  Facing larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const;
+  Eigen::Matrix3Xd arms(int patch, const Vec<double, 3>& x) const;
+
+  const Surface<3>& patches_;
+  const Places<3>& positions_;
+  FaceSearch faces_;
+};
 
 /// The place of a facing on every patch that has it, first its own. It is exactly on an edge or a corner that it is
 /// nearer to than `within`, in coordinates of its patch.
-std::vector<Facing> patches_at(const std::vector<SurfacePatch>& patches, Facing facing, double within = at_face_edge);
+std::vector<Facing> patches_at(const Surface<3>& patches, Facing facing, double within = at_face_edge);
 /// The place of an edge of its patch that is near a facing, on this patch and on the one behind the edge. pre: there is
 /// one.
-std::array<Facing, 2> places_on_edge(const std::vector<SurfacePatch>& patches, const Facing& facing, int edge);
+std::array<Facing, 2> places_on_edge(const Surface<3>& patches, const Facing& facing, int edge);
 
-class SurfaceSearch {
+template <int D>
+class SurfaceSearch : public PatchSearch<D> {
  public:
-  /// `positions`: of the vertices, 3 x vertices, length. Both arguments must outlive the search.
-  SurfaceSearch(const std::vector<SurfacePatch>& patches, const Points<double>& positions);
+  /// Both arguments must outlive the search.
+  SurfaceSearch(const Surface<D>& patches, const Places<D>& positions) : PatchSearch<D>(patches, positions) {}
 
-  /// The place of the surface that x faces; patch = none where x lies past a border, or beyond a centre of curvature.
+  /// The place of the surface that x faces; patch = no_patch where x lies past a border, or beyond a centre of
+  /// curvature. Then the distance to the nearest facet is set, and its patch; if x or what is near it is not finite, as
+  /// in an iterate that Newton rejects, the distance is infinite.
   ///
   ///   outward  outward normal of the slave side at x, any length. Only patches whose normal opposes it are eligible;
   ///            if it is zero, all patches are
   ///
   /// If the nearest of all patches has x outside of the solid, x is not inside of the solid by a farther patch.
-  Facing facing(const Vec<double, 3>& x, const Vec<double, 3>& outward) const;
+  Facing facing(const Vec<double, D>& x, const Vec<double, D>& outward) const {
+    const Vec<double, D> any = Vec<double, D>::Zero();
+    Facing found = this->nearest_facing({x, outward});
+    if (found.patch != no_patch && outward != any && this->gap(found, x) < 0) {
+      const Facing nearest = this->nearest_facing({x, any});
+      if (nearest.patch != no_patch && !(this->gap(nearest, x) < 0)) found = {};
+    }
+    if constexpr (D == 2) found = this->settled(found, {x, outward});
+    return found.patch != no_patch ? found : this->facing_nothing(x);
+  }
   /// The foot of x on one patch, which is extended past its edges.
-  Facing foot_on(int patch, const Vec<double, 3>& x) const;
-
- private:
-  using Near = FaceSearch::Near;
-  /// The search's question: which place is nearest to x among the patches that oppose `outward`, if that is not zero?
-  struct Query {
-    Vec<double, 3> x, outward;
-  };
-  bool is_eligible(int patch, const Query& query) const;
-  bool is_past_end(const Facing& at, const Query& query) const;
-  Facing nearest_facing(const Query& query) const;
-  Facing newton_foot(Facing at, const Vec<double, 3>& x, int hops) const;
-  Facing beyond_edges(const Facing& at, const Query& query) const;
-  Facing larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const;
-  double gap(const Facing& at, const Vec<double, 3>& x) const;
-  Eigen::Matrix3Xd arms(int patch, const Vec<double, 3>& x) const;
-
-  const std::vector<SurfacePatch>& patches_;
-  const Points<double>& positions_;
-  FaceSearch faces_;
+  Facing foot_on(int patch, const Vec<double, D>& x) const {
+    return this->newton_foot({patch, this->middle_of(patch)}, x, 0);
+  }
 };
 
 }  // namespace stickslip

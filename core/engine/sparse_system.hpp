@@ -93,7 +93,7 @@ SparseSystem<T>::SparseSystem(const Model& model, const Slots<T>& slots, const S
 template <class T>
 void SparseSystem<T>::lay_out(Places places) {
   places_ = std::move(places);
-  const bool slides = model_.slides_along_curves();
+  const bool slides = model_.slides_on_surfaces();
   auto lists = bodies_.blocks(matrix_.row_of_dof);
   for (std::size_t p = 0; p < model_.points.size(); ++p) lists.add(this->rows_of(p, places_with_room(p)));
   matrix_.pattern = make_pattern(static_cast<int>(this->size()), lists);
@@ -121,21 +121,18 @@ template <class T>
 std::vector<int> SparseSystem<T>::places_around(std::size_t p, const PointTangent<T>& tangent) const {
   std::vector<int> places = tangent.places;
   std::sort(places.begin(), places.end());
-  if (model_.points[p].curve < 0) return places;
-  const auto& curve = model_.curves[model_.points[p].curve];
-  const auto add = [&](const Patch& patch) {
-    for (int vertex : patch.vertices)
-      if (vertex != Patch::none) places.push_back(curve.places[vertex]);
-  };
-  const auto is_faced = [&](const Patch& patch) {
+  if (model_.points[p].surface < 0) return places;
+  const auto& curve = model_.surfaces[model_.points[p].surface];
+  const auto is_faced = [&](const Patch<2>& patch) {
     const auto holds = [&](int vertex) {
       return std::find(tangent.places.begin(), tangent.places.end(), curve.places[vertex]) != tangent.places.end();
     };
-    return holds(patch.vertices[1]) || holds(patch.vertices[2]);
+    return holds(patch.corner(0)) || holds(patch.corner(1));
   };
-  if (curve.obstacle < 0 && tangent.places.size() > 1)
-    for (const auto& patch : curve.patches)
-      if (is_faced(patch)) add(patch);
+  if (model_.dimension == 2 && curve.obstacle < 0 && tangent.places.size() > 1)
+    for (const auto& patch : curve.template patches<2>())
+      for (int vertex : is_faced(patch) ? std::span<const int>(patch.vertices) : std::span<const int>())
+        if (vertex != no_vertex) places.push_back(curve.places[vertex]);
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
   return places;
@@ -190,7 +187,7 @@ std::optional<int> SparseSystem<T>::motions_unresisted(const std::vector<PointTa
 
 template <class T>
 bool SparseSystem<T>::make_factor(Counters& counters) {
-  if (model_.slides_along_curves() && !has_room(made_.tangents)) {
+  if (model_.slides_on_surfaces() && !has_room(made_.tangents)) {
     Places places;
     for (std::size_t p = 0; p < made_.tangents.size(); ++p)
       places.push_back(made_.tangents[p].places.empty() ? places_with_room(p) : places_around(p, made_.tangents[p]));

@@ -12,7 +12,7 @@ namespace detail {
 /// Adds the labels of the next point.
 template <class T>
 void take_labels(const Facing& facing, History<T>& history) {
-  const bool faces = facing.patch != Patch::none;
+  const bool faces = facing.patch != no_patch;
   history.patch.push_back(faces ? facing.patch : facing.nearest);
   history.faces.push_back(faces);
 }
@@ -41,7 +41,7 @@ Earlier<T> earlier(const ContactInput<T>& input, int p) {
   const auto& point = input.model.points[p];
   Earlier<T> known{&input.slots.geometry[p]};
   if (point.foot >= 0) known.foot = &input.previous.foot[point.foot];
-  if (point.foot >= 0 && point.curve >= 0) known.patch = input.previous.patch[p];
+  if (point.foot >= 0 && point.surface >= 0) known.patch = input.previous.patch[p];
   return known;
 }
 
@@ -56,7 +56,7 @@ PointOutcome<U, Tangents> point_outcome(const ContactInput<T>& input, const Plac
                                               input.cone, tie_length, at.faces_master ? state : &open);
 }
 
-/// Outcome of point p with its present geometry, which is stored in `geometry`. `facing`: what it faces of its curve;
+/// Outcome of point p with its present geometry, which is stored in `geometry`. `facing`: what it faces of its surface;
 /// not read where it has none.
 template <class T, int D, int Tangents>
 PointOutcome<T, Tangents> evaluate_present(const ContactInput<T>& input, int p, const Vector<T>& compact,
@@ -81,7 +81,7 @@ History<T> initial_history(const Model& model, const Slots<T>& slots) {
                      zeros(model.effects.friction ? model.scene.contacts.size() : 0), zeros(model.memory_count)};
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
-    if (model.slides_along_curves()) detail::take_labels(point.facing, history);
+    if (model.slides_on_surfaces()) detail::take_labels(point.facing, history);
     if (point.foot < 0) continue;
     with_dimension(model.dimension, [&]<int D>() {
       const auto at = detail::place_point<D>(detail::positions_of_start(model, slots), point, point.facing);
@@ -102,7 +102,7 @@ State<T> initial_state(const Model& model, const Slots<T>& slots) {
   state.contact.gap = zeros(points);
   state.contact.slip = zeros(tangential);
   if (model.effects.current_geometry) state.contact.moved = slots.geometry;
-  for (std::size_t p = 0; model.slides_along_curves() && p < points; ++p)
+  for (std::size_t p = 0; model.slides_on_surfaces() && p < points; ++p)
     state.contact.facing.push_back(model.points[p].facing);
   state.history = initial_history(model, slots);
   return state;
@@ -120,17 +120,17 @@ ContactField<T> evaluate_contact(const ContactInput<T>& input, const Vector<T>& 
   field.placement.resize(model.multiplier_count - count);
   field.foot.resize(model.foot_count);
   field.slip.resize(model.multiplier_count - count);
-  const bool present = model.effects.current_geometry, along_curves = model.slides_along_curves();
+  const bool present = model.effects.current_geometry, slides = model.slides_on_surfaces();
   if (present) field.moved.resize(count);
-  if (along_curves) field.facing = input.facing ? *input.facing : detail::facings(input, compact);
+  if (slides) field.facing = input.facing ? *input.facing : detail::facings(input, compact);
   for (int p = 0; p < count; ++p) {
     const auto& point = model.points[p];
     const ContactState* const state = states ? &(*states)[p] : nullptr;
     detail::with_point(model, point, [&]<int D, int Tangents>() {
       const auto lambda = detail::gather_traction<T, Tangents>(multiplier, point.multiplier);
       const auto outcome =
-          present ? detail::evaluate_present<T, D, Tangents>(
-                        input, p, compact, along_curves ? field.facing[p] : point.facing, lambda, state, field.moved[p])
+          present ? detail::evaluate_present<T, D, Tangents>(input, p, compact, slides ? field.facing[p] : point.facing,
+                                                             lambda, state, field.moved[p])
                   : evaluate_point<T, D, Tangents>(
                         input.slots.geometry[p], detail::relative_displacement<T, D>(input, p, compact), lambda,
                         detail::previous_placement<T, Tangents>(input, p), input.rho[p],

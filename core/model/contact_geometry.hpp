@@ -1,9 +1,8 @@
-/// Geometry of contact points: against rigid obstacles, along master curves, and over the segments of either. One
+/// Geometry of contact points: against rigid obstacles, along master surfaces, and over the segments of either. One
 /// evaluation serves all: the initial geometry, which is kept at small strain, is that at the positions of the start.
 #pragma once
 
-#include "core/model/curve_geometry.hpp"
-#include "core/model/surface_geometry.hpp"
+#include "core/model/master_geometry.hpp"
 
 namespace stickslip::detail {
 
@@ -42,12 +41,12 @@ PlacedPoint<U, D> on_obstacle(const Positions<U, T, Displacement>& positions, co
   return at;
 }
 
-/// Geometry of a point that faces nothing of its curve: it transmits no force. The gap is the distance, the normal that
-/// of the start, and if it faced nothing then either, opposite to the normal of its own side. The foot is its placement
-/// beside the curve.
+/// Geometry of a point that faces nothing of its surface: it transmits no force. The gap is the distance. The normal is
+/// that of the start, and if it faced nothing then either, opposite to the normal of its own side. The foot is its
+/// placement beside the surface.
 template <int D, class U, class T, class Displacement>
-PlacedPoint<U, D> off_curve(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
-                            const Facing& facing, const Earlier<T>& earlier) {
+PlacedPoint<U, D> off_master(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
+                             const Facing& facing, const Earlier<T>& earlier) {
   decltype(PointGeometry<U>::normal) normal(D);
   for (int i = 0; i < D; ++i) normal[i] = U(i == 1 ? 1.0 : 0.0);
   if (earlier.start) {
@@ -61,26 +60,20 @@ PlacedPoint<U, D> off_curve(const Positions<U, T, Displacement>& positions, cons
   at.faces_master = false;
   at.geometry = alone<U>(U(facing.distance), normal, point.slave_nodes);
   at.geometry.area = U(earlier.start ? earlier.start->area : whole_area(point, positions.slots));
-  if (point.foot < 0 || facing.nearest == Patch::none) return at;
-  if constexpr (D == 2)
-    at.foot[0] = place_beside(positions, point, facing.nearest);
-  else
-    set_place_beside(positions, point, facing.nearest, at);
+  if (point.foot < 0 || facing.nearest == no_patch) return at;
+  place_beside(positions, point, facing.nearest, at);
   return at;
 }
 
-/// Geometry of a point that faces no facet or vertex for good. `facing`: what it faces of its curve; not read where it
-/// has none.
+/// Geometry of a point that faces no facet or vertex for good. `facing`: what it faces of its surface; not read where
+/// it has none.
 template <int D, class U, class T, class Displacement>
 PlacedPoint<U, D> place_point(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
                               const Facing& facing, const Earlier<T>& earlier = {}) {
-  if (point.curve >= 0 && facing.patch == Patch::none) return off_curve<D>(positions, point, facing, earlier);
-  if constexpr (D == 3) {
-    if (point.curve >= 0) return on_surface(positions, point, facing, earlier);
-  } else {
+  if (point.surface >= 0 && facing.patch == no_patch) return off_master<D>(positions, point, facing, earlier);
+  if constexpr (D == 2)
     if (!point.segments.empty()) return on_segments(positions, point, facing, earlier);
-    if (point.curve >= 0) return on_curve(positions, point, facing, earlier);
-  }
+  if (point.surface >= 0) return on_master<D>(positions, point, facing, earlier);
   return on_obstacle<D>(positions, point, earlier);
 }
 
@@ -119,7 +112,7 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
       if (!at.faces_master) geometry.gap += offset_of(point, model, slots);
     });
   }
-  if (point.master == Master::segments && point.curve >= 0) geometry.area = whole_area(point, slots);
+  if (point.master == Master::segments && point.surface >= 0) geometry.area = whole_area(point, slots);
   if (!point.shares_normal) return geometry;
   with_dimension(model.dimension, [&]<int D>() {
     share_normal<D, T>(geometry, slave_normal<D>(point.area_facets, slots.points));

@@ -19,7 +19,7 @@ struct ContactInput {
   const History<T>& previous;  ///< of the last converged increment
   ConeRadius cone = ConeRadius::augmented;
   double time = 0;
-  const std::vector<Facing>* facing = nullptr;  ///< per point, on its curve; nullptr: search for it
+  const std::vector<Facing>* facing = nullptr;  ///< per point, on its surface; nullptr: search for it
 };
 
 }  // namespace stickslip

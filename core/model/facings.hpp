@@ -1,4 +1,4 @@
-/// Search for what contact points face of their curves, where displacements have moved them.
+/// Search for what contact points face of their surfaces, where displacements have moved them.
 #pragma once
 
 #include "core/model/contact_input.hpp"
@@ -6,7 +6,7 @@
 namespace stickslip::detail {
 
 /// What each contact point faces of its curve. `compact`: displacements of the contact nodes; `kept`: per point, the
-/// patch on which its foot is to be found, or Patch::none to search the curve; empty: search for all points.
+/// patch on which its foot is to be found, or no_patch to search the surface; empty: search for all points.
 template <class T>
 std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compact, const std::vector<int>& kept = {});
 

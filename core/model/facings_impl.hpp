@@ -1,7 +1,6 @@
 /// Definitions of the templates in facings.hpp.
 #pragma once
 
-#include "core/contact/curve_search.hpp"
 #include "core/contact/surface_search.hpp"
 #include "core/model/contact_geometry.hpp"
 #include "core/model/facings.hpp"
@@ -11,39 +10,31 @@ namespace stickslip {
 
 namespace detail {
 
-/// The patch that point p faced in the last increment, or Patch::none.
+/// The patch that point p faced in the last increment, or no_patch.
 template <class T>
 int last_faced(const ContactInput<T>& input, int p) {
-  return input.previous.faces[p] ? input.previous.patch[p] : Patch::none;
+  return input.previous.faces[p] ? input.previous.patch[p] : no_patch;
 }
 
-inline CurveSearch search_of(const MasterCurve& curve, const Eigen::Matrix2Xd& places) {
-  return {curve.patches, places};
-}
-inline SurfaceSearch search_of(const MasterCurve& curve, const Points<double>& places) {
-  return {curve.surface, places};
-}
-
-/// A curve, in space a surface, where displacements have moved it, and the search along it. Places are from the first
-/// vertex at the start, so that what lies far from the origin is found as near it. Not to be copied.
+/// A surface where displacements have moved it, and the search along it. Places are from the first vertex at the start,
+/// so that what lies far from the origin is found as near it. Not to be copied.
 template <class T, int D>
-struct MovedCurve {
+struct MovedSurface {
   using Place = Vec<double, D>;
-  using Places = std::conditional_t<D == 2, Eigen::Matrix2Xd, Points<double>>;
   const ContactInput<T>& input;
   const Vector<T>& compact;  ///< displacements of the contact nodes
   Place origin;
-  Places places;  ///< of the vertices
-  std::conditional_t<D == 2, CurveSearch, SurfaceSearch> search;
+  Places<D> places;  ///< of the vertices
+  SurfaceSearch<D> search;
 
   /// All arguments must outlive this.
-  MovedCurve(const ContactInput<T>& input, const MasterCurve& curve, const Vector<T>& compact)
+  MovedSurface(const ContactInput<T>& input, const MasterSurface& surface, const Vector<T>& compact)
       : input(input),
         compact(compact),
-        origin(values(positions().template vertex<D>(curve, 0).start)),
-        places(places_of(curve)),
-        search(search_of(curve, places)) {}
-  MovedCurve(const MovedCurve&) = delete;
+        origin(values(positions().template vertex<D>(surface, 0).start)),
+        places(places_of(surface)),
+        search(surface.patches<D>(), places) {}
+  MovedSurface(const MovedSurface&) = delete;
 
   /// Place of the slave node of a point.
   Place slave(const ContactPoint& point) const { return place(positions().template slave<D>(point)); }
@@ -68,9 +59,9 @@ struct MovedCurve {
  private:
   auto positions() const { return positions_at<D>(input.model, input.slots, compact, input.time); }
   Place place(const Placed<T, T, D>& at) const { return values(at.start) - origin + values(at.moved); }
-  Places places_of(const MasterCurve& curve) const {
-    Places at(D, curve.vertex_count);
-    for (int v = 0; v < curve.vertex_count; ++v) at.col(v) = place(positions().template vertex<D>(curve, v));
+  Places<D> places_of(const MasterSurface& surface) const {
+    Places<D> at(D, surface.vertex_count);
+    for (int v = 0; v < surface.vertex_count; ++v) at.col(v) = place(positions().template vertex<D>(surface, v));
     return at;
   }
 };
@@ -80,7 +71,7 @@ template <class T>
 void find_moved_segments(const ContactInput<T>& input, int curve, const Vector<T>& compact,
                          std::vector<Facing>& found) {
   const Model& model = input.model;
-  const auto& master = model.curves[curve];
+  const auto& master = model.surfaces[curve];
   Points<double> start = values(input.slots.points);
   if (master.obstacle >= 0) start.conservativeResize(Eigen::NoChange, model.node_count + master.vertex_count);
   Points<double> moved = Points<double>::Zero(start.rows(), start.cols());
@@ -94,26 +85,26 @@ void find_moved_segments(const ContactInput<T>& input, int curve, const Vector<T
   }
   std::vector<int> last;
   for (int p = 0; !master.own.empty() && p < static_cast<int>(found.size()); ++p)
-    last.push_back(model.points[p].curve == curve ? last_faced(input, p) : Patch::none);
+    last.push_back(model.points[p].surface == curve ? last_faced(input, p) : no_patch);
   find_segments(model, curve, start, moved, last, found);
 }
 
-/// Sets what the points of a curve face; the arguments are those of facings().
+/// Sets what the points of a surface face; the arguments are those of facings().
 template <class T, int D>
-void find_along_curve(const ContactInput<T>& input, int curve, const Vector<T>& compact, const std::vector<int>& kept,
-                      std::vector<Facing>& found) {
+void find_along_surface(const ContactInput<T>& input, int surface, const Vector<T>& compact,
+                        const std::vector<int>& kept, std::vector<Facing>& found) {
   const Model& model = input.model;
-  const MovedCurve<T, D> now(input, model.curves[curve], compact);
+  const MovedSurface<T, D> now(input, model.surfaces[surface], compact);
   for (int p = 0; p < static_cast<int>(found.size()); ++p) {
     const auto& point = model.points[p];
-    if (point.curve != curve) continue;
+    if (point.surface != surface) continue;
     const Vec<double, D> x = now.slave(point);
-    if (!kept.empty() && kept[p] != Patch::none) {
+    if (!kept.empty() && kept[p] != no_patch) {
       found[p] = now.search.foot_on(kept[p], x);
       continue;
     }
     if constexpr (D == 2)
-      if (point.own.vertex != Patch::none) {
+      if (point.own.vertex != no_vertex) {
         found[p] = now.search.facing_itself(x, now.outward(point), point.own, last_faced(input, p));
         continue;
       }
@@ -125,30 +116,30 @@ template <class T>
 std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compact, const std::vector<int>& kept) {
   const Model& model = input.model;
   std::vector<Facing> found(model.points.size());
-  for (int c = 0; c < static_cast<int>(model.curves.size()); ++c) {
-    if (model.curves[c].is_integrated())
+  for (int c = 0; c < static_cast<int>(model.surfaces.size()); ++c) {
+    if (model.surfaces[c].is_integrated())
       find_moved_segments(input, c, compact, found);
     else
-      with_dimension(model.dimension, [&]<int D>() { find_along_curve<T, D>(input, c, compact, kept, found); });
+      with_dimension(model.dimension, [&]<int D>() { find_along_surface<T, D>(input, c, compact, kept, found); });
   }
   return found;
 }
 
 template <class T>
 void place_open_vertices(const ContactInput<T>& input, const Vector<T>& compact, ContactField<T>& field) {
-  std::optional<MovedCurve<T, 2>> now;
+  std::optional<MovedSurface<T, 2>> now;
   for (int p = 0, of = -1; p < static_cast<int>(field.facing.size()); ++p) {
     const auto& point = input.model.points[p];
     auto& facing = field.facing[p];
-    if (point.own.vertex == Patch::none || point.foot < 0 || facing.patch != Patch::none) continue;
-    if (of != point.curve) now.emplace(input, input.model.curves[point.curve], compact);
-    of = point.curve;
+    if (point.own.vertex == no_vertex || point.foot < 0 || facing.patch != no_patch) continue;
+    if (of != point.surface) now.emplace(input, input.model.surfaces[point.surface], compact);
+    of = point.surface;
     facing.nearest =
         now->search.nearest_of_itself(now->slave(point), now->outward(point), point.own, last_faced(input, p));
-    const bool is_near = facing.nearest != Patch::none;
-    field.foot[point.foot] =
-        is_near ? place_beside(positions_at(input.model, input.slots, compact, input.time), point, facing.nearest)
-                : T(0);
+    PlacedPoint<T, 2> at;
+    if (facing.nearest != no_patch)
+      place_beside(positions_at(input.model, input.slots, compact, input.time), point, facing.nearest, at);
+    field.foot[point.foot] = at.foot[0];
   }
 }
 

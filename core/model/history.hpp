@@ -22,7 +22,7 @@ struct History {
                         ///< differences from the start (PlacedPoint::foot)
   Vector<T> work;       ///< frictional work since the start, per contact; empty without friction
   Vector<T> bodies;     ///< what materials remember, at BodyMesh::first_memory; empty where none does
-  /// Of points that slide along curves: the patch that a foot is on, per point, and whether the point faced it. One
+  /// Of points that slide on surfaces: the patch that a foot is on, per point, and whether the point faced it. One
   /// that faced nothing has the patch that is nearest. Labels, which have no derivative.
   std::vector<int> patch = {};
   std::vector<char> faces = {};

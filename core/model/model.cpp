@@ -100,9 +100,9 @@ void place_contact_nodes(Model& model) {
   for (const auto& point : model.points) nodes.insert(point.nodes.begin(), point.nodes.end());
   const bool slides = model.scene.finite_strain;
   const auto turns = [&](const ContactPoint& point) {  // the normal of its side tells what it faces
-    return slides && point.curve >= 0 && is_continuum(model.bodies[point.slave_body].mesh.shape);
+    return slides && point.surface >= 0 && is_continuum(model.bodies[point.slave_body].mesh.shape);
   };
-  for (const auto& curve : model.curves)
+  for (const auto& curve : model.surfaces)
     if (slides) nodes.insert(curve.nodes.begin(), curve.nodes.end());
   for (const auto& point : model.points)
     if (turns(point))
@@ -116,7 +116,7 @@ void place_contact_nodes(Model& model) {
         auto& places = point.facet_places.emplace_back();
         for (int node : facet) places.push_back(model.place_of(node));
       }
-  for (auto& curve : model.curves)
+  for (auto& curve : model.surfaces)
     for (int node : curve.nodes)
       if (slides) curve.places.push_back(model.place_of(node));
   for (auto& framed : model.framed)

@@ -8,11 +8,12 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/contact/contact_point.hpp"
-#include "core/contact/curve.hpp"
 #include "core/contact/face.hpp"
+#include "core/contact/own_vertex.hpp"
 #include "core/contact/surface.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/model/design_velocity.hpp"
@@ -39,53 +40,59 @@ struct BodyMesh {
   int first_memory = 0;  ///< first entry of the body in History::bodies
 };
 
-/// A side of a body, or a rigid polyline, as a curve of patches (core/contact/curve.hpp); in space a side as a surface
-/// (core/contact/surface.hpp).
-struct MasterCurve {
+/// A side of a body, or a rigid polyline, as a surface along which points slide.
+struct MasterSurface {
   int contact = 0;
   int obstacle = -1;        ///< index of the polyline in Scene::obstacles; -1: a side of a body
   std::vector<int> nodes;   ///< per vertex: node; empty for a polyline
   std::vector<int> places;  ///< index of these nodes in Model::contact_nodes
   int vertex_count = 0;
-  std::vector<Patch> patches;              ///< in the plane
-  std::vector<SurfacePatch> surface = {};  ///< in space
+  std::variant<Surface<2>, Surface<3>> surface;
   /// Segment-integrated contact: the two nodes of each patch, and the nodes at which the side ends. Vertices of a
   /// polyline count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<std::vector<int>> facets = {};
   std::vector<int> ends = {};
   std::vector<std::array<int, 3>> edges = {};  ///< per facet: the side of a quadratic element that it is half of
   std::map<int, OwnVertex> own = {};           ///< of a side that is integrated against itself: per node
+  bool is_rigid() const { return obstacle >= 0; }
   bool is_integrated() const { return !facets.empty(); }
-  /// Whether a patch joins all of its neighbours without a corner.
+  /// Its patches. pre: the model has D dimensions.
+  template <int D>
+  const Surface<D>& patches() const {
+    return std::get<Surface<D>>(surface);
+  }
+  /// Whether a patch joins all of its neighbours without a corner or a crease.
   bool goes_on_around(int patch) const {
-    if (surface.empty()) return patches[patch].goes_on_before() && patches[patch].goes_on_after();
-    const auto& at = surface[patch];
-    return std::all_of(at.goes_on.begin(), at.goes_on.begin() + at.corners, [](char goes_on) { return goes_on; });
+    return std::visit([patch](const auto& patches) { return patches[patch].goes_on_around(); }, surface);
   }
-  /// The vertices of a patch; Patch::none for one that it lacks.
+  /// The vertices of a patch; no_vertex for one that it lacks.
   std::span<const int> vertices(int patch) const {
-    if (surface.empty()) return patches[patch].vertices;
-    return surface[patch].vertices;
+    return std::visit([&](const auto& patches) { return std::span<const int>(patches[patch].vertices); }, surface);
   }
-  /// Whether its last patch ends where the first begins.
-  bool is_loop() const { return patches.back().next == 0; }
+  /// Whether it has patches that are not smooth.
+  bool has_facets() const {
+    const auto is_facet = [](const auto& patch) { return !patch.is_smooth(); };
+    return std::visit([&](const auto& all) { return std::any_of(all.begin(), all.end(), is_facet); }, surface);
+  }
+  /// Whether the last patch of a curve ends where the first begins.
+  bool is_loop() const { return patches<2>().back().across[1] == 0; }
 };
 
 /// One slave node and its master. At small strain it does not change.
 struct ContactPoint {
-  /// Kind of master. facet, vertex: of a deformable side or a polyline; faces: of a deformable side in space; curve:
-  /// patches of a MasterCurve; segments: mortar segments.
-  enum class Master { obstacle, facet, vertex, faces, segments, curve };
+  /// Kind of master. facet, vertex: of a deformable side or a polyline; faces: of a deformable side in space; surface:
+  /// patches of a MasterSurface; segments: mortar segments.
+  enum class Master { obstacle, facet, vertex, faces, segments, surface };
   Master master = Master::obstacle;
   int contact = 0;                  ///< index in Scene::contacts
   int obstacle = -1;                ///< index in Scene::obstacles; -1: deformable master
-  int curve = -1;                   ///< index in Model::curves; -1: its master is no curve
-  Facing facing = {};               ///< what it faces of the curve at the start
+  int surface = -1;                 ///< index in Model::surfaces; -1: its master is none of these
+  Facing facing = {};               ///< what it faces of the surface at the start
   std::vector<Facing> starts = {};  ///< in space: this place on each patch of the surface that has it
   OwnVertex own = {};               ///< set if the slave side is its own master
   int foot = -1;                    ///< offset of its foot in History::foot; -1: it has none
   std::vector<int> nodes;   ///< slave nodes, then master nodes. facet: its two; vertex: itself, then the far ends
-                            ///< of the facets whose end the projection is; faces: of all; curve: of the initial patch
+                            ///< of the facets whose end the projection is; faces: of all; surface: of the initial patch
   int slave_nodes = 1;      ///< number of slave nodes in `nodes`; more than 1 if segment-integrated
   std::vector<int> places;  ///< index of `nodes` in Model::contact_nodes
   /// facet: its two ends; vertex: itself between its neighbours, whose facets share the normal. Vertices of a polyline
@@ -93,7 +100,7 @@ struct ContactPoint {
   std::vector<int> corners;
   std::vector<FacePlace> faces;               ///< faces: the place that it faces, on each face that has it
   std::vector<std::vector<int>> area_facets;  ///< facets of the slave side at the node
-  /// The same as indices in Model::contact_nodes; for solid bodies along a curve.
+  /// The same as indices in Model::contact_nodes; for solid bodies on a surface.
   std::vector<std::vector<int>> facet_places;
   std::vector<std::vector<int>> area_edges;  ///< sides of elements at the node, a share of which is its tributary area
   /// Segment-integrated contact: the segments that the multiplier of nodes[0] acts on. At finite strain: its whole
@@ -111,7 +118,7 @@ struct ContactPoint {
   int components() const { return 1 + tangents; }
   /// Number of its entries in History::foot, in D dimensions. pre: it has a foot.
   int feet(int D) const {
-    if (curve >= 0) return D == 2 ? 1 : 6;
+    if (surface >= 0) return D == 2 ? 1 : 6;
     return turns_frame ? 3 * D : D;
   }
 };
@@ -191,7 +198,7 @@ struct Model {
   int node_count = 0;
   std::vector<BodyMesh> bodies;
   std::vector<ContactPoint> points;
-  std::vector<MasterCurve> curves;
+  std::vector<MasterSurface> surfaces;
   std::vector<Follower> followers;
   int multiplier_count = 0;
   int foot_count = 0;                   ///< entries of History::foot
@@ -224,8 +231,8 @@ struct Model {
   int place_of(int node) const {
     return static_cast<int>(std::lower_bound(contact_nodes.begin(), contact_nodes.end(), node) - contact_nodes.begin());
   }
-  /// Whether points slide along curves.
-  bool slides_along_curves() const { return effects.current_geometry && !curves.empty(); }
+  /// Whether points slide along surfaces.
+  bool slides_on_surfaces() const { return effects.current_geometry && !surfaces.empty(); }
   /// The nodes and facets of "body.side", "body.a & body.b", "body.a - body.b". Throws ModelError. Those that the scene
   /// names are resolved above, once: nothing that is evaluated asks for a name.
   SideSet side(const std::string& expression) const;
@@ -256,8 +263,8 @@ inline int framed_index(const Model& model, int node) {
 
 /// A node of the master that a point faces or may come to face; against an obstacle the slave node.
 inline int master_node(const Model& model, const ContactPoint& point) {
-  if (point.curve < 0 || point.obstacle >= 0) return point.nodes.back();
-  return model.curves[point.curve].nodes.front();
+  if (point.surface < 0 || point.obstacle >= 0) return point.nodes.back();
+  return model.surfaces[point.surface].nodes.front();
 }
 
 /// Result of f.template operator()<D>() with the space dimension D.

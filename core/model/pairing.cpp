@@ -5,14 +5,13 @@
 #include <optional>
 #include <set>
 
-#include "core/contact/curve_search.hpp"
 #include "core/contact/face_search.hpp"
 #include "core/contact/facet_search.hpp"
 #include "core/contact/segments.hpp"
 #include "core/contact/surface_search.hpp"
 #include "core/mesh/sides.hpp"
 #include "core/model/facings_impl.hpp"
-#include "core/model/master_curve.hpp"
+#include "core/model/master_surface.hpp"
 #include "core/model/segment_search.hpp"
 #include "core/model/slave_point.hpp"
 
@@ -149,34 +148,34 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
   }
 }
 
-/// What a slave node faces of a curve at the start. Sets what it may face, if the curve is its own side.
-Facing facing_of(const CurveSearch& search, const MasterCurve& curve, const Eigen::Matrix2Xd& places, bool of_itself,
-                 const Vec<double, 2>& x, const Vec<double, 2>& outward, ContactPoint& point) {
-  if (!of_itself) return search.facing(x, outward);
-  const auto found = std::find(curve.nodes.begin(), curve.nodes.end(), point.nodes[0]);
-  point.own =
-      own_vertex(curve.patches, places, static_cast<int>(found - curve.nodes.begin()), outward, point.mesh_size);
-  if (!point.own.may_face_some(curve.patches)) return {};
-  Facing facing = search.facing_itself(x, outward, point.own, Patch::none);
-  if (facing.patch == Patch::none) facing.nearest = search.nearest_of_itself(x, outward, point.own, Patch::none);
-  return facing;
-}
-
-/// The same of a surface, with the patches that have this place.
-Facing facing_of(const SurfaceSearch& search, const MasterCurve& surface, const Points<double>&, bool,
-                 const Vec<double, 3>& x, const Vec<double, 3>& outward, ContactPoint& point) {
+/// What a slave node faces of a surface at the start. Sets what it may face, if the surface is its own side; in space
+/// also this place on each patch that has it.
+template <int D>
+Facing facing_of(const SurfaceSearch<D>& search, const MasterSurface& master, const Places<D>& places, bool of_itself,
+                 const Vec<double, D>& x, const Vec<double, D>& outward, ContactPoint& point) {
+  const Surface<D>& patches = master.patches<D>();
+  if constexpr (D == 2)
+    if (of_itself) {
+      const auto found = std::find(master.nodes.begin(), master.nodes.end(), point.nodes[0]);
+      point.own = own_vertex(patches, places, static_cast<int>(found - master.nodes.begin()), outward, point.mesh_size);
+      if (!point.own.may_face_some(patches)) return {};
+      Facing facing = search.facing_itself(x, outward, point.own, no_patch);
+      if (facing.patch == no_patch) facing.nearest = search.nearest_of_itself(x, outward, point.own, no_patch);
+      return facing;
+    }
   const Facing facing = search.facing(x, outward);
-  if (facing.patch != Patch::none) point.starts = patches_at(surface.surface, facing);
+  if constexpr (D == 3)
+    if (facing.patch != no_patch) point.starts = patches_at(patches, facing);
   return facing;
 }
 
-/// Contact along a curve, in space a surface: each slave node against the place of it that it faces. At finite strain a
-/// node that faces nothing yet is a point too.
-template <int D, class Places>
-void pair_along(Model& model, const Points<double>& points, const Pairing& pairing, MasterCurve curve,
-                const Places& places) {
+/// Contact along a surface: each slave node against the place of it that it faces. At finite strain a node that faces
+/// nothing yet is a point too.
+template <int D>
+void pair_along_surface(Model& model, const Points<double>& points, const Pairing& pairing) {
+  auto [master, places] = make_master<D>(model, points, pairing.index, pairing.obstacle, pairing.master.facets);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  const auto search = detail::search_of(curve, places);
+  const SurfaceSearch<D> search(master.template patches<D>(), places);
   const bool of_itself = model.scene.contacts[pairing.index].is_of_itself();
   for (int node : pairing.slave.nodes) {
     if (has_no_area(model, points, pairing.slave, node)) continue;
@@ -184,29 +183,21 @@ void pair_along(Model& model, const Points<double>& points, const Pairing& pairi
     const bool has_side = is_continuum(shape) && !point.area_facets.empty();
     const Vec<double, D> outward =
         has_side ? slave_normal<D>(point.area_facets, points) : Vec<double, D>::Zero().eval();
-    point.master = ContactPoint::Master::curve;
-    point.curve = static_cast<int>(model.curves.size());
-    point.facing = facing_of(search, curve, places, of_itself, points.col(node), outward, point);
-    if (of_itself && !point.own.may_face_some(curve.patches)) continue;
-    const bool faces = point.facing.patch != Patch::none;
+    point.master = ContactPoint::Master::surface;
+    point.surface = static_cast<int>(model.surfaces.size());
+    point.facing = facing_of<D>(search, master, places, of_itself, points.col(node), outward, point);
+    if constexpr (D == 2)
+      if (of_itself && !point.own.may_face_some(master.template patches<2>())) continue;
+    const bool faces = point.facing.patch != no_patch;
     if (!faces && !model.scene.finite_strain) continue;
     point.shares_normal = !model.scene.finite_strain && pairing.obstacle < 0 && has_side;
     if (faces && pairing.obstacle < 0)
-      for (int vertex : curve.vertices(point.facing.patch))
-        if (vertex != Patch::none) point.nodes.push_back(curve.nodes[vertex]);
+      for (int vertex : master.vertices(point.facing.patch))
+        if (vertex != no_vertex) point.nodes.push_back(master.nodes[vertex]);
     add_point(model, std::move(point));
   }
   model.effects.smoothing |= model.scene.contacts[pairing.index].smoothing != Smoothing::none;
-  model.curves.push_back(std::move(curve));
-}
-
-void pair_along_curve(Model& model, const Points<double>& points, const Pairing& pairing) {
-  if (model.dimension == 2) {
-    auto [curve, places] = make_curve(model, points, pairing.index, pairing.obstacle, pairing.master.facets);
-    return pair_along<2>(model, points, pairing, std::move(curve), places);
-  }
-  auto [surface, places] = make_surface_of(model, points, pairing.index, pairing.master.facets);
-  pair_along<3>(model, points, pairing, std::move(surface), places);
+  model.surfaces.push_back(std::move(master));
 }
 
 /// Nodes in which a side turns by more than 60 degrees.
@@ -263,14 +254,15 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
   const bool slides = model.scene.finite_strain && !master.facets.empty();
   const auto corners = model.scene.finite_strain ? corners_of(pairing.slave, points) : std::set<int>{};
   auto of_node = segments_of_nodes(master, pairing, slides || master.facets.empty(), corners);
-  const int curve = slides ? static_cast<int>(model.curves.size()) : -1;
-  if (slides) model.curves.push_back(integrated_curve(model, points, pairing.index, pairing.obstacle, pairing.master));
+  const int curve = slides ? static_cast<int>(model.surfaces.size()) : -1;
+  if (slides)
+    model.surfaces.push_back(integrated_curve(model, points, pairing.index, pairing.obstacle, pairing.master));
   const std::size_t first = model.points.size();
   for (int node : pairing.slave.nodes) {
     if (of_node[node].empty()) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
     point.master = ContactPoint::Master::segments;
-    point.curve = curve;
+    point.surface = curve;
     point.segments = of_node[node];
     point.slave_nodes = static_cast<int>(nodes_of_segments(node, point.segments, {}, model.node_count).size());
     point.nodes = nodes_of_segments(node, point.segments, point.segments, model.node_count);
@@ -279,7 +271,7 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
   if (!slides) return;
   std::vector<Facing> found(model.points.size());
   find_segments(model, curve, master.points, Points<double>::Zero(master.points.rows(), master.points.cols()),
-                std::vector<int>(found.size(), Patch::none), found);
+                std::vector<int>(found.size(), no_patch), found);
   for (std::size_t p = first; p < model.points.size(); ++p) {
     model.points[p].facing = found[p];
     model.points[p].nodes = found[p].nodes;
@@ -303,9 +295,10 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   }
   const bool has_facets =
       pairing.obstacle < 0 || std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape);
-  const bool along_curve = model.scene.finite_strain || contact.smoothing != Smoothing::none ||
-                           !contact.group.empty() || contact.is_of_itself();
-  if (has_facets && along_curve && !contact.segment) return pair_along_curve(model, points, pairing);
+  const bool slides = model.scene.finite_strain || contact.smoothing != Smoothing::none || !contact.group.empty() ||
+                      contact.is_of_itself();
+  if (has_facets && slides && !contact.segment)
+    return with_dimension(model.dimension, [&]<int D>() { pair_along_surface<D>(model, points, pairing); });
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   if (contact.is_of_itself() && !model.scene.finite_strain)

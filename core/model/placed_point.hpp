@@ -1,5 +1,4 @@
-/// Where a contact point is and what it knows from earlier: what its geometries against obstacles, curves and surfaces
-/// share.
+/// Where a contact point is and what it knows from earlier: what its geometries against obstacles and surfaces share.
 #pragma once
 
 #include "core/contact/segments.hpp"
@@ -13,9 +12,9 @@ template <class T, int D>
 struct PlacedPoint {
   PointGeometry<T> geometry;
   /// Foot, as History::foot stores it. On an obstacle: in its frame, from the initial position of the slave node, and
-  /// where ContactPoint::turns_frame the normal and the first tangent. On a curve: coordinate on the patch less
-  /// foot_reference(), on a surface the first two, and both tangents in terms of the slopes y_s and y_t there; where
-  /// segment-integrated: mean initial arc length less origin_of_arcs(). What is not stored is 0.
+  /// where ContactPoint::turns_frame the normal and the first tangent. On a surface: coordinates on the patch less
+  /// foot_reference(), and in space both tangents in terms of the slopes y_s and y_t there; where segment-integrated:
+  /// mean initial arc length less origin_of_arcs(). What is not stored is 0.
   Feet<T, D> foot = Feet<T, D>::Constant(T(0));
   /// Motion of the foot relative to the master since the last increment, length. Slip is its tangential part.
   Vec<T, D> foot_motion = Vec<T, D>::Constant(T(0));
@@ -27,7 +26,7 @@ template <class T>
 struct Earlier {
   const PointGeometry<T>* start = nullptr;  ///< its initial geometry
   const T* foot = nullptr;                  ///< in the history of the last increment; none: it has no friction
-  int patch = Patch::none;                  ///< that this foot is on, along a curve
+  int patch = no_patch;                     ///< that this foot is on, along a surface
 };
 
 template <class T>

@@ -68,7 +68,7 @@ void take_rows(const Traction<Probe, Tangents>& traction, const Traction<Probe, 
   }
 }
 
-/// Indices in Model::contact_nodes of the columns of a tangent: of the nodes that the point touches, and along a curve
+/// Indices in Model::contact_nodes of the columns of a tangent: of the nodes that the point touches, and on a surface
 /// of those that its last foot is on. The first `faced` of them also have forces.
 template <class T>
 std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Facing& facing, int& faced) {
@@ -78,8 +78,8 @@ std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Fa
   for_each_place(input.model, point, facing, [&](int place) { places.push_back(place); });
   faced = static_cast<int>(places.size());
   if (!point.segments.empty() || point.foot < 0) return places;
-  if (facing.patch != Patch::none || input.previous.faces[p])
-    for_each_place(input.model.curves[point.curve], input.previous.patch[p], [&](int place) {
+  if (facing.patch != no_patch || input.previous.faces[p])
+    for_each_place(input.model.surfaces[point.surface], input.previous.patch[p], [&](int place) {
       if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
     });
   return places;
@@ -87,7 +87,7 @@ std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Fa
 
 /// Whether the tangent of a point is by the displacements of all nodes that it touches.
 inline bool has_places(const Model& model, const ContactPoint& point) {
-  return (point.curve >= 0 || !point.segments.empty()) && model.effects.current_geometry;
+  return (point.surface >= 0 || !point.segments.empty()) && model.effects.current_geometry;
 }
 
 /// Tangent of an open point: it bears nothing wherever it is, and its rows are -A lambda.
@@ -111,7 +111,7 @@ PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing& 
 }
 
 /// Tangent by the displacements of the nodes at the places `of`, of which the first `faced` have forces, `at_once` dofs
-/// in one sweep. `facing`: what the point faces of its curve.
+/// in one sweep. `facing`: what the point faces of its surface.
 template <class T, int D, int Tangents, int at_once>
 PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing& facing, std::vector<int> of,
                                   int faced, const Vector<T>& compact, const Vector<T>& multiplier,
@@ -162,7 +162,7 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
                               const Vector<T>& multiplier, ContactState state, const std::vector<Facing>& facing) {
   const auto& point = input.model.points[p];
   const bool by_places = detail::has_places(input.model, point);
-  const Facing& found = by_places && point.curve >= 0 ? facing[p] : point.facing;
+  const Facing& found = by_places && point.surface >= 0 ? facing[p] : point.facing;
   if (state == ContactState::open) return detail::open_tangent(input, p, found);
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if (by_places) {

@@ -90,16 +90,16 @@ struct Positions {
     const Vec<T, 2> X = start_of(model, obstacle, slots, model.node_count + number), u = frame_now.displacement(X);
     return {X, {U(u[0]), U(u[1])}};
   }
-  /// A vertex of a curve, in space of a surface.
+  /// A vertex of a surface.
   template <int D = 2>
-  Placed<U, T, D> vertex(const MasterCurve& curve, int number) const {
+  Placed<U, T, D> vertex(const MasterSurface& surface, int number) const {
     if constexpr (D == 2)
-      if (curve.obstacle >= 0) return vertex_of_polyline(curve.obstacle, number);
-    const Vec<T, D> X = slots.points.template block<D, 1>(0, curve.nodes[number]);
+      if (surface.obstacle >= 0) return vertex_of_polyline(surface.obstacle, number);
+    const Vec<T, D> X = slots.points.template block<D, 1>(0, surface.nodes[number]);
     if constexpr (is_start)
       return {X, Vec<U, D>::Constant(U(0))};
     else
-      return {X, displacement(curve.places[number])};
+      return {X, displacement(surface.places[number])};
   }
   /// A node of a body, or a vertex of the polyline that is the obstacle, numbered behind them.
   Placed<U, T> node(int obstacle, int number) const {

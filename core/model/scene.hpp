@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "core/algebra/scalar.hpp"
-#include "core/contact/curve.hpp"
 #include "core/contact/friction_law.hpp"
 #include "core/contact/rigid_surfaces.hpp"
+#include "core/contact/surface.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/model/table.hpp"
 #include "core/solids/descriptions.hpp"

@@ -27,9 +27,9 @@ double area_share(const std::vector<Segment>& segments, const ContactPoint& poin
 class OwnDepths {
  public:
   /// `last`: of find_segments().
-  OwnDepths(const Model& model, int curve, const std::vector<int>& last) : curve_(model.curves[curve]) {
+  OwnDepths(const Model& model, int curve, const std::vector<int>& last) : curve_(model.surfaces[curve]) {
     for (std::size_t p = 0; p < model.points.size(); ++p)
-      if (model.points[p].curve == curve && last[p] != Patch::none)
+      if (model.points[p].surface == curve && last[p] != no_patch)
         for (const Segment& facet : model.points[p].segments) last_[facet.slave[0]].push_back(last[p]);
   }
   /// The depth, length; negative: the slave facet faces this one nowhere.
@@ -37,7 +37,7 @@ class OwnDepths {
     double depth = std::numeric_limits<double>::infinity();
     for (int node : slave) {
       const OwnVertex& own = curve_.own.at(node);
-      if (!own.may_face(curve_.patches, facet)) return -1;
+      if (!own.may_face(curve_.patches<2>(), facet)) return -1;
       depth = std::min(depth, depth_of(own, slave[0], facet));
     }
     return depth;
@@ -45,19 +45,19 @@ class OwnDepths {
 
  private:
   double depth_of(const OwnVertex& own, int slave, int facet) const {
-    double depth = own.depth_in(facet, Patch::none);
+    double depth = own.depth_in(facet, no_patch);
     if (const auto faced = last_.find(slave); faced != last_.end())
       for (int last : faced->second) depth = std::max(depth, own.depth_in(facet, last));
     return depth;
   }
 
-  const MasterCurve& curve_;
+  const MasterSurface& curve_;
   std::map<int, std::vector<int>> last_;  ///< per first node of a slave facet: the patches that its points faced
 };
 
 /// The nearest facet that a node of a side in contact with itself may touch: its normal is against that of the node,
 /// which is outside of it or beside it.
-FacetSearch::Nearest nearest_of_itself(const FacetSearch& search, const MasterCurve& master,
+FacetSearch::Nearest nearest_of_itself(const FacetSearch& search, const MasterSurface& master,
                                        const Points<double>& positions, const ContactPoint& point) {
   const auto right_of = [](const Vec<double, 2>& along) { return Vec<double, 2>(along[1], -along[0]); };
   const auto along = [&](int from, int to) -> Vec<double, 2> {
@@ -70,7 +70,7 @@ FacetSearch::Nearest nearest_of_itself(const FacetSearch& search, const MasterCu
   return search.nearest(positions.col(node).head<2>(), [&](int facet) {
     const int first = master.facets[facet][0];
     const Vec<double, 2> tau = along(first, master.facets[facet][1]), normal = right_of(tau), off = along(first, node);
-    return own.may_touch(master.patches, facet) &&
+    return own.may_touch(master.patches<2>(), facet) &&
            normal.dot(outward) <= -least_against * normal.norm() * outward.norm() &&
            (normal.dot(off) >= 0 || is_beside_facet(off.dot(tau) / tau.squaredNorm()));
   });
@@ -80,7 +80,7 @@ FacetSearch::Nearest nearest_of_itself(const FacetSearch& search, const MasterCu
 
 void find_segments(const Model& model, int curve, const Points<double>& start, const Points<double>& moved,
                    const std::vector<int>& last, std::vector<Facing>& found) {
-  const auto& master = model.curves[curve];
+  const auto& master = model.surfaces[curve];
   // (places from a node of the master at the start, so that what lies far from the origin is found as near it)
   const Points<double> positions = (start.colwise() - start.col(master.facets[0][0])) + moved;
   const FacetSearch search(positions, master.facets);
@@ -90,7 +90,7 @@ void find_segments(const Model& model, int curve, const Points<double>& start, c
   std::map<std::array<int, 2>, std::vector<Segment>> of_facet;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
-    if (point.curve != curve) continue;
+    if (point.surface != curve) continue;
     Facing facing;
     for (const Segment& facet : point.segments) {
       const auto [entry, is_new] = of_facet.try_emplace(facet.slave);

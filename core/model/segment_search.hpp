@@ -7,10 +7,10 @@ namespace stickslip {
 
 /// Sets found[p] for each point p of an integrated curve.
 ///
-///   curve  index in Model::curves
+///   curve  index in Model::surfaces
 ///   start  initial positions of the nodes, D x nodes, length; if the master is a polyline, then those of its vertices
 ///   moved  displacements likewise
-///   last   of a side in contact with itself: per point, the patch that it faced in the last increment, or Patch::none
+///   last   of a side in contact with itself: per point, the patch that it faced in the last increment, or no_patch
 ///
 /// A point less than 1 % of whose area faces the curve counts as facing nothing. Its distance is that to the nearest
 /// facet of the curve; of a side in contact with itself, to the nearest that it may touch, or else the size of the

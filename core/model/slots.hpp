@@ -53,7 +53,7 @@ struct Slots {
   std::vector<Matrix<T>> frames;           ///< per framed node: D x D, frame vectors as columns
   std::vector<Vector<T>> spins;            ///< per contact point: displacement of its obstacle per degree of rotation,
                                            ///< length; empty: no obstacle rotates
-  std::vector<Vector<T>> arcs;  ///< per curve that is integrated: initial arc length along it to the beginning
+  std::vector<Vector<T>> arcs;  ///< per surface, of integrated curves: initial arc length along it to the beginning
                                 ///< of each facet, and of all; empty for another; no entry: none is
   bool normals_turn = false;    ///< of the model's effects
 

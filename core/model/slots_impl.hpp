@@ -86,8 +86,8 @@ T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& s
     const Vector<double> direction = c == 0 ? values(geometry.normal) : values(geometry.tangents.col(c - 1));
     const auto held = [&](int node) { return is_held(model, slots, node, direction); };
     const bool slave_held = std::all_of(point.nodes.begin(), middle, held);
-    const auto& masters = point.curve < 0 ? point.nodes : model.curves[point.curve].nodes;
-    const bool master_held = std::all_of(point.curve < 0 ? middle : masters.begin(), masters.end(), held);
+    const auto& masters = point.surface < 0 ? point.nodes : model.surfaces[point.surface].nodes;
+    const bool master_held = std::all_of(point.surface < 0 ? middle : masters.begin(), masters.end(), held);
     slave_yields |= master_held && !slave_held;
     master_yields |= slave_held && !master_held;
   }
@@ -118,15 +118,15 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
     }
     return value(k) > 1e-6 * value(mean) ? k : mean;
   };
-  const auto mean_along_curve = [&](const MasterCurve& curve) {  // it does not jump where a point crosses facets
+  const auto mean_over_surface = [&](const MasterSurface& curve) {  // it does not jump where a point crosses facets
     T sum{};
     for (int node : curve.nodes)
       for (int i = 0; i < model.dimension; ++i) sum += block_of(node)(i, i);
     return sum / T(static_cast<double>(model.dimension) * static_cast<double>(curve.nodes.size()));
   };
-  std::vector<T> of_curve;
-  for (const auto& curve : model.curves)
-    of_curve.push_back(model.slides_along_curves() && curve.obstacle < 0 ? mean_along_curve(curve) : T(0));
+  std::vector<T> of_surface;
+  for (const auto& curve : model.surfaces)
+    of_surface.push_back(model.slides_on_surfaces() && curve.obstacle < 0 ? mean_over_surface(curve) : T(0));
   std::vector<T> stiffness;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
@@ -139,7 +139,7 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
       else
         master += -geometry.weights[i] * k;
     }
-    if (point.curve >= 0 && model.slides_along_curves()) master = of_curve[point.curve];
+    if (point.surface >= 0 && model.slides_on_surfaces()) master = of_surface[point.surface];
     stiffness.push_back(point.obstacle >= 0 ? slave : stiffness_between(model, slots, p, slave, master));
   }
   return stiffness;
@@ -214,8 +214,9 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
   slots.normals_turn = model.effects.normals_turn;
   for (const auto& contact : model.scene.contacts)
     slots.friction.push_back(contact.friction ? contact.friction->template as<T>(numbers) : FrictionLaw<T>());
-  if (std::any_of(model.curves.begin(), model.curves.end(), [](const auto& curve) { return curve.is_integrated(); }))
-    for (const auto& curve : model.curves) slots.arcs.push_back(detail::arcs_of(model, curve, slots));
+  if (std::any_of(model.surfaces.begin(), model.surfaces.end(),
+                  [](const auto& curve) { return curve.is_integrated(); }))
+    for (const auto& curve : model.surfaces) slots.arcs.push_back(detail::arcs_of(model, curve, slots));
   for (const auto& point : model.points) {
     slots.geometry.push_back(detail::initial_geometry(model, point, slots));
     // A gap that is rounding of the coordinates would make forces of its own, where no load presses.

@@ -26,7 +26,7 @@ struct ContactField {
   Vector<T> traction;   ///< t, force per area; normal: compression negative
   /// Present geometry of each point; empty at small strain, where Slots::geometry holds.
   std::vector<PointGeometry<T>> moved;
-  /// What each point faces of its curve; empty if no point slides along a curve.
+  /// What each point faces of its surface; empty if no point slides along one.
   std::vector<Facing> facing;
   /// For derivatives alone (sensitivity/rays.hpp), laid out as traction: direction in which the trial of a slipping
   /// point leaves the apex of its cone. Zero for other points; empty if no point is at an apex.

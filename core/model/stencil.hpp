@@ -5,30 +5,30 @@
 
 namespace stickslip {
 
-/// Calls f(place) for each vertex of a patch, Model::contact_nodes[place]; for none where no node moves the curve, or
-/// `patch` is Patch::none.
+/// Calls f(place) for each vertex of a patch, Model::contact_nodes[place]; for none where no node moves the surface, or
+/// `patch` is no_patch.
 template <class F>
-void for_each_place(const MasterCurve& curve, int patch, F&& f) {
-  if (curve.obstacle >= 0 || patch == Patch::none) return;
-  for (int vertex : curve.vertices(patch))
-    if (vertex != Patch::none) f(curve.places[vertex]);
+void for_each_place(const MasterSurface& surface, int patch, F&& f) {
+  if (surface.is_rigid() || patch == no_patch) return;
+  for (int vertex : surface.vertices(patch))
+    if (vertex != no_vertex) f(surface.places[vertex]);
 }
 
 /// Calls f(place) for each node of a point that faces `facing`, Model::contact_nodes[place], in the order of the
 /// weights of its geometry.
 template <class F>
 void for_each_place(const Model& model, const ContactPoint& point, const Facing& facing, F&& f) {
-  if (point.curve < 0 || !model.slides_along_curves()) {
+  if (point.surface < 0 || !model.slides_on_surfaces()) {
     for (int place : point.places) f(place);
   } else if (!facing.nodes.empty()) {
     for (int node : facing.nodes) f(model.place_of(node));
   } else {
     f(point.places[0]);
-    for_each_place(model.curves[point.curve], facing.patch, f);
+    for_each_place(model.surfaces[point.surface], facing.patch, f);
   }
 }
 
-/// What point p faces of its curve in a field.
+/// What point p faces of its surface in a field.
 template <class T>
 const Facing& facing_in(const Model& model, const ContactField<T>& field, std::size_t p) {
   return field.facing.empty() ? model.points[p].facing : field.facing[p];

@@ -57,9 +57,9 @@ class KeptPatches {
   bool keep(const Model& model) {
     bool any = false;
     for (std::size_t p = 0; p < last_.size(); ++p) {
-      if (!returned_[p] || last_[p].patch == Patch::none || (!kept_.empty() && kept_[p] != Patch::none)) continue;
-      if (model.curves[model.points[p].curve].goes_on_around(last_[p].patch)) continue;
-      kept_.resize(last_.size(), Patch::none);
+      if (!returned_[p] || last_[p].patch == no_patch || (!kept_.empty() && kept_[p] != no_patch)) continue;
+      if (model.surfaces[model.points[p].surface].goes_on_around(last_[p].patch)) continue;
+      kept_.resize(last_.size(), no_patch);
       kept_[p] = last_[p].patch;
       any = true;
     }
@@ -70,7 +70,7 @@ class KeptPatches {
   bool is_wrong(const ContactInput<T>& input, const Vector<T>& compact, const ContactField<T>& field) const {
     const auto free = detail::facings(input, compact);
     for (std::size_t p = 0; p < kept_.size(); ++p)
-      if (kept_[p] != Patch::none && field.state[p] != ContactState::open && free[p].patch != kept_[p]) return true;
+      if (kept_[p] != no_patch && field.state[p] != ContactState::open && free[p].patch != kept_[p]) return true;
     return false;
   }
 
@@ -80,7 +80,7 @@ class KeptPatches {
     visited_.clear();
   }
 
-  /// Per point: the patch that it is kept on, or Patch::none; empty: no point is kept.
+  /// Per point: the patch that it is kept on, or no_patch; empty: no point is kept.
   const std::vector<int>& kept() const { return kept_; }
 
  private:

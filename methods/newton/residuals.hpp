@@ -247,7 +247,7 @@ detail::Evaluation<T> Evaluator<T>::operator()(const Unknowns<T>& unknowns) {
   if (task_.arc) engine_.move_loads(unknowns.time);
   const Vector<T> compact = engine_.compact(unknowns.u);
   std::vector<Facing> facing;
-  if (model.slides_along_curves()) {
+  if (model.slides_on_surfaces()) {
     const Stopwatch time(account_.seconds.contact_search);
     facing = detail::facings(input, compact, patches_.kept());
     input.facing = &facing;

@@ -71,7 +71,8 @@ void add_pushes(const Slots<T>& slots, const ForceColumns& columns, std::size_t 
     for (int k = 0; k < 3; ++k) {
       const Vec<double, 2> force(std::cos(k * third), std::sin(k * third));
       columns.add(statics.pushes.col(3 * p + k), point.nodes[0], force);
-      if (point.obstacle < 0) columns.add(statics.pushes.col(3 * p + k), model.curves[point.curve].nodes[0], -force);
+      if (point.obstacle < 0)
+        columns.add(statics.pushes.col(3 * p + k), model.surfaces[point.surface].nodes[0], -force);
     }
     return;
   }

@@ -117,7 +117,7 @@ int folded_middle(const Model& model, const Slots<T>& slots, const State<T>& sta
     const Vec<double, 2> line = now(side[1]) - now(side[0]);
     return 4 * std::abs(bulge.now().dot(line)) >= line.squaredNorm();
   };
-  for (std::size_t p = 0; model.slides_along_curves() && p < state.contact.facing.size(); ++p)
+  for (std::size_t p = 0; model.slides_on_surfaces() && p < state.contact.facing.size(); ++p)
     for (const auto& segment : state.contact.facing[p].pieces)
       for (const auto& side : {segment.slave_edge, segment.master_edge})
         if (state.contact.state[p] != ContactState::open && is_folded(side)) return side[2];

@@ -76,7 +76,7 @@ State<T> settle(Run<T>& run, const ContactInput<T>& input, Unknowns<T> at, Conta
   state.displacement = run.engine.all(at.u);
   state.multiplier = std::move(at.multiplier);
   state.contact = std::move(field);
-  if (run.model.slides_along_curves()) detail::place_open_vertices(input, run.engine.compact(at.u), state.contact);
+  if (run.model.slides_on_surfaces()) detail::place_open_vertices(input, run.engine.compact(at.u), state.contact);
   state.history = next_history(input, state.contact, state.multiplier);
   state.history.bodies = bulk_flow(run.model, run.slots, state.displacement, input.previous.bodies);
   return state;

@@ -56,10 +56,10 @@ inline PrescribedFacets prescribed_facets(const Model& model, int contact) {
   for (const auto& point : model.points)
     for (const auto& facet : point.area_facets)
       if (point.contact == contact && point.obstacle < 0) take(facets.slave, facet[0], facet[1]);
-  for (const auto& curve : model.curves)
-    if (curve.contact == contact && curve.obstacle < 0)
-      for (const auto& patch : curve.patches)
-        take(facets.master, curve.nodes[patch.vertices[1]], curve.nodes[patch.vertices[2]]);
+  for (const auto& curve : model.surfaces)
+    if (curve.contact == contact && curve.obstacle < 0 && model.dimension == 2)
+      for (const auto& patch : curve.patches<2>())
+        take(facets.master, curve.nodes[patch.corner(0)], curve.nodes[patch.corner(1)]);
   return facets;
 }
 

@@ -6,13 +6,11 @@
 
 #include "core/contact/surface_search.hpp"
 #include "core/model/loading.hpp"
-#include "core/model/surface_geometry.hpp"
+#include "core/model/master_geometry.hpp"
 #include "sensitivity/ties/tie.hpp"
 
 namespace stickslip {
 namespace {
-
-Vec<double, 2> place_of(const Facing& facing) { return {facing.xi, facing.eta}; }
 
 /// The normal of a patch at a place, and how it turns along each direction of its tangent plane.
 struct Shape {
@@ -24,7 +22,7 @@ struct Shape {
 
 /// `vertex(v)`: where vertex v of the surface is.
 template <class Vertex>
-Shape shape_at(const SurfacePatch& patch, const Vec<double, 2>& at, Vertex&& vertex) {
+Shape shape_at(const Patch<3>& patch, const Vec<double, 2>& at, Vertex&& vertex) {
   Eigen::Matrix3Xd arms(3, static_cast<Eigen::Index>(patch.vertices.size()));
   const Placed<double, double, 3> origin = vertex(patch.vertices[0]);
   for (std::size_t i = 0; i < patch.vertices.size(); ++i)
@@ -55,32 +53,31 @@ Jump jump_between(const Shape& a, const Shape& b) {
 
 bool is_along_surface(const Model& model, const State<double>& state, int p) {
   const auto& point = model.points[p];
-  return model.dimension == 3 && model.slides_along_curves() && point.curve >= 0 &&
-         state.contact.facing[p].patch != Patch::none;
+  return model.dimension == 3 && model.slides_on_surfaces() && point.surface >= 0 &&
+         state.contact.facing[p].patch != no_patch;
 }
 
 /// The foot of a point on the patch that it faces, in a scalar.
 template <class T>
-SurfacePlace<T> foot_of(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time, int p,
-                        const Facing& facing) {
+SurfacePlace<T, 3> foot_of(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time, int p,
+                           const Facing& facing) {
   const auto& point = model.points[p];
-  const auto& surface = model.curves[point.curve];
+  const auto& surface = model.surfaces[point.surface];
   const auto positions = detail::positions_at<3>(model, slots, compact, time);
   const auto vertex = [&](int v) { return positions.template vertex<3>(surface, v); };
-  return foot_on_patch<T, T>(surface.surface[facing.patch], detail::surface_reference(point, facing.patch),
-                             place_of(facing), positions.template slave<3>(point), vertex)
+  return foot_on_patch<T, T>(surface.patches<3>()[facing.patch], detail::foot_reference<3>(model, point, facing.patch),
+                             facing.at, positions.template slave<3>(point), vertex)
       .place;
 }
 
 /// beyond_edge() of a foot with its derivatives.
-Direction beyond(const SurfacePlace<Direction>& foot, int edge) {
-  const int corners = foot.patch->corners;
-  Direction way(beyond_edge(corners, edge, foot.at));
+Direction beyond(const SurfacePlace<Direction, 3>& foot, int edge) {
+  Direction way(beyond_edge(*foot.patch, edge, foot.at));
   const Vec<double, 2> origin = Vec<double, 2>::Zero();
   for (int i = 0; i < 2; ++i) {
     Vec<double, 2> along = origin;
     along[i] = 1;
-    way += foot.rest[i] * (beyond_edge(corners, edge, along) - beyond_edge(corners, edge, origin));
+    way += foot.rest[i] * (beyond_edge(*foot.patch, edge, along) - beyond_edge(*foot.patch, edge, origin));
   }
   return way;
 }
@@ -89,23 +86,23 @@ Direction beyond(const SurfacePlace<Direction>& foot, int edge) {
 
 void EdgeTie::find(const SolvedState& of, std::vector<Tie>& ties) {
   const auto& [model, slots, state, memory, rho, cone, time, largest] = of;
-  if (model.dimension != 3 || !model.slides_along_curves()) return;
+  if (model.dimension != 3 || !model.slides_on_surfaces()) return;
   const Vector<double> compact = to_compact(model, state.displacement);
   const auto positions = detail::positions_at<3>(model, slots, compact, time);
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     if (!is_along_surface(model, state, p) || !has_a_say(of, p)) continue;
     const auto& point = model.points[p];
-    const auto& surface = model.curves[point.curve];
-    const auto on_patches = patches_at(surface.surface, state.contact.facing[p], weak_margin);
+    const auto& surface = model.surfaces[point.surface];
+    const auto on_patches = patches_at(surface.patches<3>(), state.contact.facing[p], weak_margin);
     if (on_patches.size() < 2) continue;
     const auto vertex = [&](int v) { return positions.template vertex<3>(surface, v); };
-    const auto shape = [&](const Facing& at) { return shape_at(surface.surface[at.patch], place_of(at), vertex); };
+    const auto shape = [&](const Facing& at) { return shape_at(surface.patches<3>()[at.patch], at.at, vertex); };
     const Shape first = shape(on_patches[0]);
     Eigen::Matrix<double, 3, 2> tangents = Eigen::Matrix<double, 3, 2>::Zero();
     for (int a = 0; a < 2 && point.foot >= 0; ++a)
       tangents.col(a) = first.slopes * state.history.foot.template segment<2>(point.foot + 2 + 2 * a);
     double turn = 0;
-    bool is_kink = !surface.surface[on_patches[0].patch].is_smooth();
+    bool is_kink = !surface.patches<3>()[on_patches[0].patch].is_smooth();
     std::vector<Place> places;
     for (const Facing& facing : on_patches) {
       const Shape here = shape(facing);
@@ -136,7 +133,7 @@ void EdgeTie::set(const Model& model, const Choice& choice, State<double>& at) c
   at.history.patch[point] = choice.branch;
   const auto& of = model.points[point];
   if (of.foot < 0) return;
-  at.history.foot.segment<2>(of.foot) = place_of(facing) - detail::surface_reference(of, choice.branch);
+  at.history.foot.segment<2>(of.foot) = facing.at - detail::foot_reference<3>(model, of, choice.branch).at;
   at.history.foot.segment<4>(of.foot + 2) = tangents;
 }
 
@@ -148,13 +145,13 @@ Verdict EdgeTie::verdict(const SidedDerivative& derivative) const {
   const auto& patch = *foot.patch;
   const Vector<double> compact = to_compact(of.model, of.at.displacement);
   const auto positions = detail::positions_at<3>(of.model, of.slots, compact, of.time);
-  const auto& surface = of.model.curves[of.model.points[point].curve];
-  const double size = shape_at(patch, place_of(facing), [&](int v) { return positions.vertex<3>(surface, v); }).size;
+  const auto& surface = of.model.surfaces[of.model.points[point].surface];
+  const double size = shape_at(patch, facing.at, [&](int v) { return positions.vertex<3>(surface, v); }).size;
   const double negligible = scales.negligible(scales.of_mesh / size)[0];
   Verdict verdict;
   for (int k = 0; k < patch.corners; ++k) {
     const Direction way = beyond(foot, k);
-    if (patch.across[k] == Patch::none || std::abs(way.v) > weak_margin) continue;
+    if (patch.across[k] == no_patch || std::abs(way.v) > weak_margin) continue;
     const double by = derivative.rate(way) / negligible;
     if (by > std::max(1.0, verdict.severity)) verdict = {crosses, Choice{patch.across[k]}, by};
   }
@@ -168,7 +165,7 @@ void for_each_edge_way(const Model& model, const Slots<Direction>& slots, const 
   const auto positions = detail::positions_at<3>(model, slots, compact, time);
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     if (state.contact.state[p] == ContactState::open || !is_along_surface(model, state, p)) continue;
-    const auto& surface = model.curves[model.points[p].curve];
+    const auto& surface = model.surfaces[model.points[p].surface];
     const auto vertex = [&](int v) -> Placed<double, double, 3> {
       const auto at = positions.vertex<3>(surface, v);
       return {values(at.start), values(at.moved)};
@@ -176,10 +173,10 @@ void for_each_edge_way(const Model& model, const Slots<Direction>& slots, const 
     const Facing facing = state.contact.facing[p];
     const auto foot = foot_of(model, slots, compact, time, p, facing);
     for (int k = 0; k < foot.patch->corners; ++k) {
-      if (foot.patch->across[k] == Patch::none) continue;
-      const auto [here, there] = places_on_edge(surface.surface, facing, k);
-      const Shape a = shape_at(*foot.patch, place_of(here), vertex),
-                  b = shape_at(surface.surface[there.patch], place_of(there), vertex);
+      if (foot.patch->across[k] == no_patch) continue;
+      const auto [here, there] = places_on_edge(surface.patches<3>(), facing, k);
+      const Shape a = shape_at(*foot.patch, here.at, vertex),
+                  b = shape_at(surface.patches<3>()[there.patch], there.at, vertex);
       if (!foot.patch->is_smooth() || jump_between(a, b).is_kink()) f(beyond(foot, k), a.size);
     }
   }
@@ -190,10 +187,9 @@ double edge_margin(const Model& model, const State<double>& state) {
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     if (state.contact.state[p] == ContactState::open || !is_along_surface(model, state, p)) continue;
     const Facing& facing = state.contact.facing[p];
-    const SurfacePatch& patch = model.curves[model.points[p].curve].surface[facing.patch];
+    const Patch<3>& patch = model.surfaces[model.points[p].surface].patches<3>()[facing.patch];
     for (int k = 0; k < patch.corners && !patch.is_smooth(); ++k)
-      if (patch.across[k] != Patch::none)
-        least = std::min(least, std::abs(beyond_edge(patch.corners, k, place_of(facing))));
+      if (patch.across[k] != no_patch) least = std::min(least, std::abs(beyond_edge(patch, k, facing.at)));
   }
   return least;
 }

@@ -1,5 +1,5 @@
-#include "core/model/curve_geometry.hpp"
 #include "core/model/loading.hpp"
+#include "core/model/master_geometry.hpp"
 #include "sensitivity/ties/tie.hpp"
 
 namespace stickslip {
@@ -21,21 +21,21 @@ template <class T>
 VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time,
                                   int p, int first, int second) {
   const auto& point = model.points[p];
-  const auto& curve = model.curves[point.curve];
+  const auto& curve = model.surfaces[point.surface];
   const auto positions = detail::positions_at(model, slots, compact, time);
   const auto placed = [&](int vertex) { return positions.vertex(curve, vertex); };
-  const auto& ends = curve.patches[first].vertices;
-  const Placed<T> vertex = placed(ends[2]);
+  const auto& patches = curve.template patches<2>();
+  const Placed<T> vertex = placed(patches[first].corner(1));
   const auto position = [&](int of) -> Vec<T, 2> { return placed(of) - vertex; };
   const auto end_geometry = [&](int patch, double end) {
-    const auto weights = detail::patch_weights<T>(curve.patches[patch], T(end));
-    const Vec<T, 2> slope = detail::on_patch<T>(curve.patches[patch], weights.slope, position),
-                    bend = detail::on_patch<T>(curve.patches[patch], weights.bend, position);
+    const auto weights = detail::patch_weights<T>(patches[patch], T(end));
+    const Vec<T, 2> slope = detail::on_patch<T>(patches[patch], weights.slope, position),
+                    bend = detail::on_patch<T>(patches[patch], weights.bend, position);
     const double speed = value(norm(slope));
     const Vec<T, 2> tangent = slope / norm(slope);
     return std::pair(tangent, cross(values(slope), values(bend)) / (speed * speed * speed));
   };
-  const Vec<T, 2> facet = -position(ends[1]);
+  const Vec<T, 2> facet = -position(patches[first].corner(0));
   const Vec<T, 2> x = positions.slave(point) - vertex;
   const auto [before, bend_before] = end_geometry(first, 1);
   const auto [after, bend_after] = end_geometry(second, 0);
@@ -46,26 +46,26 @@ VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, con
 }
 
 /// Whether two patches may have a kink at their vertex: not where they join as one B-spline.
-bool has_kink(const Patch& first) { return first.smoothing != Smoothing::b_spline || !first.goes_on_after(); }
+bool has_kink(const Patch<2>& first) { return first.smoothing != Smoothing::b_spline || !first.goes_on(1); }
 
 /// Whether derivatives jump at the end of a patch. Splines share the tangent there; theirs jump where the curvature
 /// does.
-bool changes_at(const Patch& patch, double bend) {
-  return patch.smoothing == Smoothing::none || !patch.goes_on_after() || bend > straight;
+bool changes_at(const Patch<2>& patch, double bend) {
+  return !patch.is_smooth() || !patch.goes_on(1) || bend > straight;
 }
 
 /// Calls f(first, second) for both ends of the patch that point p faces, if another patch joins there.
 template <class F>
 void for_each_vertex(const Model& model, const State<double>& state, int p, F&& f) {
   const auto& point = model.points[p];
-  if (model.dimension == 3 || point.curve < 0 || !point.segments.empty() || state.contact.facing.empty()) return;
-  const auto& patches = model.curves[point.curve].patches;
+  if (model.dimension == 3 || point.surface < 0 || !point.segments.empty() || state.contact.facing.empty()) return;
+  const auto& patches = model.surfaces[point.surface].patches<2>();
   const int now = state.contact.facing[p].patch;
-  if (now == Patch::none) return;
-  for (const auto& [first, second] : {std::pair(patches[now].previous, now), std::pair(now, patches[now].next)}) {
-    if (first == Patch::none || second == Patch::none || !has_kink(patches[first])) continue;
+  if (now == no_patch) return;
+  for (const auto& [first, second] : {std::pair(patches[now].across[0], now), std::pair(now, patches[now].across[1])}) {
+    if (first == no_patch || second == no_patch || !has_kink(patches[first])) continue;
     const int other = first == now ? second : first;
-    if (point.own.vertex == Patch::none || point.own.may_face(patches, other)) f(first, second);
+    if (point.own.vertex == no_patch || point.own.may_face(patches, other)) f(first, second);
   }
 }
 
@@ -73,7 +73,7 @@ void for_each_vertex(const Model& model, const State<double>& state, int p, F&& 
 
 void VertexTie::find(const SolvedState& of, std::vector<Tie>& ties) {
   const auto& [model, slots, state, memory, rho, cone, time, largest] = of;
-  if (!model.slides_along_curves()) return;
+  if (!model.slides_on_surfaces()) return;
   const Vector<double> compact = to_compact(model, state.displacement);
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const auto& point = model.points[p];
@@ -81,7 +81,7 @@ void VertexTie::find(const SolvedState& of, std::vector<Tie>& ties) {
     const bool presses = bears(of, p);
     for_each_vertex(model, state, p, [&, &model = model, &slots = slots, time = time](int first, int second) {
       const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
-      if (!changes_at(model.curves[point.curve].patches[first], at.bend)) return;
+      if (!changes_at(model.surfaces[point.surface].patches<2>()[first], at.bend)) return;
       if (std::abs(at.overshoot) <= weak_margin)
         ties.emplace_back(VertexTie{p, first, second, !presses || at.turn <= straight});
     });
@@ -98,10 +98,10 @@ Choice VertexTie::now(const Model&, const State<double>& at) const { return {at.
 void VertexTie::set(const Model& model, const Choice& choice, State<double>& at) const {
   const int patch = choice.branch;
   const double xi = patch == first ? 1 : 0;
-  at.contact.facing[point] = {.patch = patch, .xi = xi};
+  at.contact.facing[point] = {.patch = patch, .at = {xi, 0}};
   at.history.patch[point] = patch;
   const auto& of = model.points[point];
-  if (of.foot >= 0) at.history.foot[of.foot] = xi - detail::foot_reference(model, of, patch);
+  if (of.foot >= 0) at.history.foot[of.foot] = xi - detail::foot_reference<2>(model, of, patch).at[0];
 }
 
 Verdict VertexTie::verdict(const SidedDerivative& derivative) const {
@@ -124,7 +124,7 @@ void for_each_vertex_way(const Model& model, const Slots<Direction>& slots, cons
     if (state.contact.state[p] == ContactState::open) continue;
     for_each_vertex(model, state, p, [&, &model = model, &slots = slots, time = time](int first, int second) {
       const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
-      const auto& patch = model.curves[model.points[p].curve].patches[first];
+      const auto& patch = model.surfaces[model.points[p].surface].patches<2>()[first];
       if (changes_at(patch, at.bend)) f(at.overshoot, at.length);
     });
   }

@@ -13,7 +13,7 @@ std::vector<double> arc_of(const Problem& problem, int contact);
 /// Whether a point has a place of its master before it, or with segments a part of it; otherwise its gap is a distance
 /// to what it does not face.
 inline bool faces_master(const ContactPoint& point, const Facing& facing) {
-  return point.curve < 0 || facing.patch != Patch::none || !facing.pieces.empty();
+  return point.surface < 0 || facing.patch != no_patch || !facing.pieces.empty();
 }
 
 /// "open", "stick" or "slip", whichever piece of the law it slips on.

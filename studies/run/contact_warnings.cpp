@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 
-#include "core/contact/curve_search.hpp"
+#include "core/contact/surface_search.hpp"
 #include "core/model/contact_assembly.hpp"
-#include "core/model/master_curve.hpp"
+#include "core/model/master_surface.hpp"
 #include "core/model/pairing.hpp"
 #include "core/model/response.hpp"
 #include "core/model/stencil.hpp"
@@ -29,13 +29,13 @@ void for_each_vertex(const SideCurve& curve, F&& f) {
                                              PlanePlace(slope[1], -slope[0]).normalized()};
   };
   for (int p = 0; p < static_cast<int>(curve.patches.size()); ++p) {
-    const Patch& patch = curve.patches[p];
+    const Patch<2>& patch = curve.patches[p];
     auto [place, normal] = at(p, 0);
-    if (patch.previous != Patch::none) normal += at(patch.previous, 1).second;
-    f(patch.vertices[1], place, normal);
-    if (patch.next != Patch::none) continue;
+    if (patch.across[0] != no_patch) normal += at(patch.across[0], 1).second;
+    f(patch.corner(0), place, normal);
+    if (patch.across[1] != no_patch) continue;
     const auto [end, out] = at(p, 1);
-    f(patch.vertices[2], end, out);
+    f(patch.corner(1), end, out);
   }
 }
 
@@ -95,10 +95,10 @@ void find_master_inside(const Problem& problem, const State<double>& state, doub
   const double reach = largest_nodal_norm(state.displacement, model.dimension);
   // of what moves, and of coordinates: less is what a solution leaves
   const double nothing = 1e-6 * reach + 8 * unit_roundoff * points.cwiseAbs().maxCoeff();
-  const CurveSearch search(slave.patches, slave.places);
+  const SurfaceSearch<2> search(slave.patches, slave.places);
   for_each_vertex(master, [&, &slots = slots](int, const PlanePlace& x, const PlanePlace& outward) {
     const Facing facing = search.facing(x, outward);
-    if (facing.patch == Patch::none) return;
+    if (facing.patch == no_patch) return;
     const double depth = -slave.gap(facing, x) - slots.numbers(contact.offset) - press.penetration;
     if (!(depth > nothing) || depth <= measures.inside) return;
     measures.inside = depth;
@@ -173,16 +173,16 @@ std::vector<std::array<int, 2>> faced_facets(const Model& model, const ContactFi
   if (point.obstacle >= 0) return {};
   if (!point.segments.empty()) {
     std::vector<std::array<int, 2>> facets;
-    const bool along_curve = point.curve >= 0 && !field.facing.empty();
+    const bool along_curve = point.surface >= 0 && !field.facing.empty();
     for (const auto& piece : along_curve ? field.facing[p].pieces : point.segments) facets.push_back(piece.master);
     return facets;
   }
-  if (point.curve >= 0) {
+  if (point.surface >= 0) {
     const int patch = field.facing.empty() ? point.facing.patch : field.facing[p].patch;
-    if (patch == Patch::none) return {};
-    const auto& curve = model.curves[point.curve];
-    const auto& vertices = curve.patches[patch].vertices;
-    return {{curve.nodes[vertices[1]], curve.nodes[vertices[2]]}};
+    if (patch == no_patch) return {};
+    const auto& curve = model.surfaces[point.surface];
+    const auto& of = curve.patches<2>()[patch];
+    return {{curve.nodes[of.corner(0)], curve.nodes[of.corner(1)]}};
   }
   std::vector<std::array<int, 2>> facets;
   for (std::size_t k = 1; k < point.corners.size(); ++k) facets.push_back({point.corners[k - 1], point.corners[k]});

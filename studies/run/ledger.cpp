@@ -276,7 +276,7 @@ Masters masters_of(const Model& model) {
     nodes.insert(point.nodes.begin() + point.slave_nodes, point.nodes.end());
     kept += static_cast<long>(point.nodes.size()) - point.slave_nodes;
   }
-  for (const auto& curve : model.curves) nodes.insert(curve.nodes.begin(), curve.nodes.end());
+  for (const auto& curve : model.surfaces) nodes.insert(curve.nodes.begin(), curve.nodes.end());
   return {static_cast<double>(nodes.size()), static_cast<double>(kept * (sizeof(double) + 2 * sizeof(int)))};
 }
 

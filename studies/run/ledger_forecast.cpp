@@ -66,7 +66,7 @@ Size size_of(const Input& input, const Model& model) {
   n.contacts = model.effects.friction ? static_cast<double>(model.scene.contacts.size()) : 0;
   n.steps = static_cast<double>(model.times.size());
   n.path = model.scene.arc_length ? std::max(model.scene.arc_length->max / n.steps, n.steps) : exactly;
-  n.moving = model.slides_along_curves() ? of_moving_points : exactly;
+  n.moving = model.slides_on_surfaces() ? of_moving_points : exactly;
   n.states = n.whole = n.steps + 1;
   if (const auto plan = plan_checkpoints(model, run_options(input))) {
     n.whole = static_cast<double>(plan->whole()) + 1;

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "core/model/master_curve.hpp"
+#include "core/model/master_surface.hpp"
 #include "core/model/pairing.hpp"
 #include "core/model/supports.hpp"
 
@@ -32,7 +32,7 @@ SideCurve curve_of_side(const SideSet& side, const Points<double>& points, const
   curve.places.resize(2, static_cast<Eigen::Index>(curve.nodes.size()));
   for (std::size_t v = 0; v < curve.nodes.size(); ++v)
     curve.places.col(static_cast<Eigen::Index>(v)) = points.col(curve.nodes[v]).head<2>();
-  curve.patches = make_patches(facets, smooth ? contact.smoothing : Smoothing::none, contact.corner, curve.places);
+  curve.patches = make_surface<2>(facets, smooth ? contact.smoothing : Smoothing::none, contact.corner, curve.places);
   return curve;
 }
 
@@ -45,7 +45,7 @@ SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, co
     const PlanePlace x(problem.slots.numbers(polyline.points[v][0]), problem.slots.numbers(polyline.points[v][1]));
     curve.places.col(v) = x + obstacle_displacement(problem, obstacle, x, time);
   }
-  curve.patches = make_patches(facets_of(polyline), contact.smoothing, contact.corner, curve.places);
+  curve.patches = make_surface<2>(facets_of(polyline), contact.smoothing, contact.corner, curve.places);
   return curve;
 }
 

@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "core/contact/curve_search.hpp"
+#include "core/contact/foot_in_plane.hpp"
+#include "core/contact/surface_search.hpp"
 #include "studies/run/case.hpp"
 
 namespace stickslip {
@@ -15,14 +16,14 @@ using PlanePlace = Vec<double, 2>;
 struct SideCurve {
   std::vector<int> nodes;  ///< per vertex; empty of a polyline
   Eigen::Matrix2Xd places;
-  std::vector<Patch> patches;
+  Surface<2> patches;
 
   auto position() const {
     return [this](int vertex) -> PlanePlace { return places.col(vertex); };
   }
   /// Gap of x to the place that it faces.
   double gap(const Facing& facing, const PlanePlace& x) const {
-    return foot_on_patch<double>(patches[facing.patch], facing.xi, x, position()).gap;
+    return foot_on_patch<double>(patches[facing.patch], facing.at, x, position()).gap;
   }
 };
 

@@ -19,20 +19,19 @@ bool flows_on(const State<double>& from, const State<double>& to) {
 std::vector<char> contacts_at_ends(const Model& model, const State<double>& before, const State<double>& state) {
   constexpr double rounding = 1e-9;  // of a facet
   std::vector<char> contacts;
-  if (!model.slides_along_curves()) return contacts;
+  if (!model.slides_on_surfaces()) return contacts;
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
-    if (point.curve < 0 || point.tangents == 0 || model.curves[point.curve].is_integrated()) continue;
+    if (point.surface < 0 || point.tangents == 0 || model.surfaces[point.surface].is_integrated()) continue;
     const Facing &now = state.contact.facing[p], &last = before.contact.facing[p];
-    const auto is_past_end = [&, &curve = model.curves[point.curve]] {
-      if (!curve.surface.empty()) return is_past_border(curve.surface[now.patch], {now.xi, now.eta}, rounding);
-      const Patch& patch = curve.patches[now.patch];
-      return (patch.previous == Patch::none && now.xi < -rounding) ||
-             (patch.next == Patch::none && now.xi > 1 + rounding);
+    const auto is_past_end = [&] {
+      return with_dimension(model.dimension, [&]<int D>() {
+        return is_past_border(model.surfaces[point.surface].patches<D>()[now.patch], now.at, rounding);
+      });
     };
-    const bool is_held = state.contact.state[p] != ContactState::open && now.patch != Patch::none && is_past_end();
+    const bool is_held = state.contact.state[p] != ContactState::open && now.patch != no_patch && is_past_end();
     const bool is_let_go =
-        before.contact.state[p] != ContactState::open && last.patch != Patch::none && now.patch == Patch::none;
+        before.contact.state[p] != ContactState::open && last.patch != no_patch && now.patch == no_patch;
     if (!is_held && !is_let_go) continue;
     contacts.resize(model.scene.contacts.size());
     contacts[point.contact] = 1;

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "core/contact/curve_search.hpp"
+#include "core/contact/surface_search.hpp"
 #include "core/model/pairing.hpp"
 #include "studies/run/side_curve.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 /// Geometry of the nearest place of an obstacle at the start: outward normal and gap; none past its free ends.
 std::optional<std::pair<PlanePlace, double>> start_against(const Problem& problem, const Obstacle& obstacle,
-                                                           const SideCurve& polyline, const CurveSearch* search,
+                                                           const SideCurve& polyline, const SurfaceSearch<2>* search,
                                                            const PlanePlace& x) {
   if (!search) {
     if (ambiguity(x, obstacle.shape, problem.slots.numbers)) return std::nullopt;
@@ -21,8 +21,8 @@ std::optional<std::pair<PlanePlace, double>> start_against(const Problem& proble
     return std::pair{PlanePlace(at.normal[0], at.normal[1]), at.gap};
   }
   const Facing facing = search->facing(x, PlanePlace::Zero());
-  if (facing.patch == Patch::none) return std::nullopt;
-  const auto foot = foot_on_patch<double>(polyline.patches[facing.patch], facing.xi, x, polyline.position());
+  if (facing.patch == no_patch) return std::nullopt;
+  const auto foot = foot_on_patch<double>(polyline.patches[facing.patch], facing.at, x, polyline.position());
   return std::pair{foot.normal, foot.gap};
 }
 
@@ -67,7 +67,7 @@ std::optional<Warning> turned_surface(const Problem& problem, int c) {
   if (outward.empty()) return std::nullopt;
   const bool is_polyline = std::holds_alternative<Polyline>(obstacle->shape);
   const SideCurve polyline = is_polyline ? curve_of_polyline(problem, *obstacle, contact, 0) : SideCurve{};
-  std::optional<CurveSearch> search;
+  std::optional<SurfaceSearch<2>> search;
   if (is_polyline) search.emplace(polyline.patches, polyline.places);
   int alike = 0, opposed = 0, inside = 0, all = 0;
   for (int node : side.nodes) {

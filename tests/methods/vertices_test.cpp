@@ -28,7 +28,7 @@ TEST(KeptPatches, AreWrongWhereThePointFacesAnother) {
   auto& point = at.field.facing[2];
   at.field.state[2] = ContactState::stick;
   const int first = point.patch;
-  ASSERT_NE(first, Patch::none);
+  ASSERT_NE(first, no_patch);
   const auto is_wrong = [&](const Unknowns<double>& u) {
     return evaluate.patches().is_wrong(input, engine.compact(u.u), at.field);
   };

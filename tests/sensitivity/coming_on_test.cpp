@@ -171,7 +171,7 @@ int came_on(const scenes::Solved& s) {
   for (std::size_t n = 1; n < s.trajectory.increments.size(); ++n) {
     const auto &now = s.trajectory.increments[n].state.contact, &before = s.trajectory.increments[n - 1].state.contact;
     for (std::size_t p = 0; p < now.facing.size(); ++p)
-      count += before.facing[p].patch == Patch::none && now.state[p] != ContactState::open;
+      count += before.facing[p].patch == no_patch && now.state[p] != ContactState::open;
   }
   return count;
 }

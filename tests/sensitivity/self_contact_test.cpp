@@ -4,7 +4,8 @@
 
 #include <ctime>
 
-#include "core/contact/curve_search.hpp"
+#include "core/contact/foot_in_plane.hpp"
+#include "core/contact/surface_search.hpp"
 #include "tests/support/blocks.hpp"
 #include "tests/support/finite_strain.hpp"
 
@@ -20,7 +21,7 @@ using Kind = Response::Kind;
 const std::vector<Vec<double, 2>> folded{{4, 1}, {0, 1}, {0, 2.5}, {4, 2.5}, {4, 3.5}, {-1, 3.5}, {-1, 0}, {4, 0}};
 
 struct Fold {
-  std::vector<Patch> patches;
+  Surface<2> patches;
   Eigen::Matrix2Xd places;
   /// `pieces`: facets of each straight part.
   Fold(int pieces, Smoothing smoothing) {
@@ -33,7 +34,7 @@ struct Fold {
         places.col(c * pieces + k) = (1 - share) * folded[c] + share * folded[(c + 1) % corners];
         facets.push_back({c * pieces + k, (c * pieces + k + 1) % count});
       }
-    patches = make_patches(facets, smoothing, 30, places);
+    patches = make_surface<2>(facets, smoothing, 30, places);
   }
 };
 
@@ -41,7 +42,7 @@ struct Fold {
 TEST(SelfContact, FindsThatWithoutTryingTheWholeWall) {
   const auto seconds_a_point = [](int pieces) {
     const Fold fold(pieces, Smoothing::none);
-    const CurveSearch search(fold.patches, fold.places);
+    const SurfaceSearch<2> search(fold.patches, fold.places);
     const Vec<double, 2> up(0, 1), down(0, -1);
     std::vector<OwnVertex> owned;
     for (const int side : {0, 6})  // one faces the other arm, one faces nothing
@@ -53,8 +54,8 @@ TEST(SelfContact, FindsThatWithoutTryingTheWholeWall) {
     while (std::clock() - start < CLOCKS_PER_SEC / 20)
       for (const auto& own : owned) {
         const bool upper = own.vertex < pieces;
-        const auto at = search.facing_itself(fold.places.col(own.vertex), upper ? up : down, own, Patch::none);
-        faced += at.patch != Patch::none;
+        const auto at = search.facing_itself(fold.places.col(own.vertex), upper ? up : down, own, no_patch);
+        faced += at.patch != no_patch;
         ++searched;
       }
     EXPECT_EQ(2 * faced, searched);
@@ -68,31 +69,31 @@ TEST(SelfContact, FacesTheOtherArmAndNotThroughTheWall) {
   for (const Smoothing smoothing : {Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline}) {
     constexpr int pieces = 8;
     const Fold fold(pieces, smoothing);
-    const CurveSearch search(fold.patches, fold.places);
+    const SurfaceSearch<2> search(fold.patches, fold.places);
     const auto faced = [&](int vertex, const Vec<double, 2>& outward, const Vec<double, 2>& shift,
-                           int last = Patch::none) {
+                           int last = no_patch) {
       const OwnVertex own = own_vertex(fold.patches, fold.places, vertex, outward, 0.5);
       return search.facing_itself(fold.places.col(vertex) + shift, outward, own, last);
     };
     for (int k = 1; k < pieces; ++k) {
       // from the lower arm up: across the slit, however far it is and a bit inside; not once it is deep inside
       const Facing across = faced(k, {0, 1}, {0, 0});
-      ASSERT_NE(across.patch, Patch::none) << k;
+      ASSERT_NE(across.patch, no_patch) << k;
       const auto place = [&](int vertex) -> Vec<double, 2> { return fold.places.col(vertex); };
-      const Vec<double, 2> foot = curve_position<double>(fold.patches[across.patch], across.xi, place);
+      const Vec<double, 2> foot = curve_position<double>(fold.patches[across.patch], across.at[0], place);
       EXPECT_NEAR(foot[1], 2.5, 1e-12);
       EXPECT_NEAR(foot[0], fold.places(0, k), 1e-9);
       EXPECT_EQ(faced(k, {0, 1}, {0, 1.7}).patch, across.patch) << "0.2 inside";
       EXPECT_EQ(faced(k, {0, 1}, {0, 2.4}, across.patch).patch, across.patch) << "0.9 inside, from in front";
-      EXPECT_EQ(faced(k, {0, 1}, {0, 2.4}).patch, Patch::none) << "0.9 inside of what it did not face";
-      EXPECT_EQ(faced(k, {0, 1}, {0, 2.6}, across.patch).patch, Patch::none) << "through all of the other wall";
+      EXPECT_EQ(faced(k, {0, 1}, {0, 2.4}).patch, no_patch) << "0.9 inside of what it did not face";
+      EXPECT_EQ(faced(k, {0, 1}, {0, 2.6}, across.patch).patch, no_patch) << "through all of the other wall";
       // the other way round it is the slave
-      EXPECT_EQ(faced(2 * pieces + k, {0, -1}, {0, 0}).patch, Patch::none);
+      EXPECT_EQ(faced(2 * pieces + k, {0, -1}, {0, 0}).patch, no_patch);
       // outer sides face nothing: what is behind them is the wall
       for (const int side : {4, 5, 6}) {
         const Vec<double, 2> along = folded[(side + 1) % 8] - folded[side];
         const Facing none = faced(side * pieces + k, {along[1], -along[0]}, {0, 0});
-        EXPECT_EQ(none.patch, Patch::none) << side;
+        EXPECT_EQ(none.patch, no_patch) << side;
         EXPECT_NEAR(none.distance, std::hypot(5, 3.5), 1e-12) << "the size of the curve";
       }
     }

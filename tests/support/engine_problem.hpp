@@ -50,7 +50,7 @@ struct EngineProblem {
   ContactInput<double> input() const { return {model, slots, rho, previous, ConeRadius::augmented, 1.0}; }
   std::vector<PointTangent<double>> tangents() const {
     const Vector<double> compact = to_compact(model, u);
-    const auto facing = model.slides_along_curves() ? detail::facings(input(), compact) : std::vector<Facing>();
+    const auto facing = model.slides_on_surfaces() ? detail::facings(input(), compact) : std::vector<Facing>();
     std::vector<PointTangent<double>> all;
     for (std::size_t p = 0; p < model.points.size(); ++p)
       all.push_back(point_tangent<double>(input(), static_cast<int>(p), compact, multiplier, states[p], facing));

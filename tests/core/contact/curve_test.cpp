@@ -1,6 +1,4 @@
 /// Master curves: smooth ones against what they interpolate, feet against their definition, search against trying all.
-#include "core/contact/curve.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +6,8 @@
 #include <numbers>
 #include <random>
 
-#include "core/contact/curve_search.hpp"
+#include "core/contact/foot_in_plane.hpp"
+#include "core/contact/surface_search.hpp"
 #include "tests/support/largest.hpp"
 
 namespace stickslip::curve_test {
@@ -25,10 +24,10 @@ struct Ring {
       if (closed || v + 1 < count) facets.push_back({v, (v + 1) % count});
     }
   }
-  std::vector<Patch> patches(Smoothing smoothing, double corner = 180) const {
-    return make_patches(facets, smoothing, corner, places);
+  Surface<2> patches(Smoothing smoothing, double corner = 180) const {
+    return make_surface<2>(facets, smoothing, corner, places);
   }
-  Place at(const Patch& patch, double xi) const { return curve_position<double>(patch, xi, where()); }
+  Place at(const Patch<2>& patch, double xi) const { return curve_position<double>(patch, xi, where()); }
   std::function<Place(int)> where() const {
     return [this](int v) -> Place { return places.col(v); };
   }
@@ -42,7 +41,7 @@ TEST(Curve, WeightsSumToOneAndTheirSlopesAreDerivatives) {
   constexpr double step = 1e-30;
   const Ring ring(7, false);
   for (const Smoothing kind : kinds)
-    for (const Patch& patch : ring.patches(kind))
+    for (const Patch<2>& patch : ring.patches(kind))
       for (double xi : {0.0, 0.3, 1.0, 1.2}) {
         const auto w = detail::patch_weights<double>(patch, xi);
         const auto c = detail::patch_weights<std::complex<double>>(patch, {xi, step});
@@ -60,12 +59,12 @@ TEST(Curve, SmoothPatchesMeetWithTheirNormalsAndSplinesWithTheirCurvatures) {  /
   const Ring ring(9);
   for (const Smoothing kind : {Smoothing::catmull_rom, Smoothing::b_spline}) {
     const auto patches = ring.patches(kind);
-    for (const Patch& patch : patches) {
+    for (const Patch<2>& patch : patches) {
       const auto end = detail::patch_weights<double>(patch, 1.0);
-      const auto start = detail::patch_weights<double>(patches[patch.next], 0.0);
+      const auto start = detail::patch_weights<double>(patches[patch.across[1]], 0.0);
       const auto gap = [&](const auto& a, const auto& b) {
         return (detail::on_patch<double>(patch, a, ring.where()) -
-                detail::on_patch<double>(patches[patch.next], b, ring.where()))
+                detail::on_patch<double>(patches[patch.across[1]], b, ring.where()))
             .norm();
       };
       EXPECT_LE(gap(end.value, start.value), 1e-15);
@@ -74,7 +73,7 @@ TEST(Curve, SmoothPatchesMeetWithTheirNormalsAndSplinesWithTheirCurvatures) {  /
         EXPECT_LE(gap(end.bend, start.bend), 1e-15);
       } else {
         EXPECT_GT(gap(end.bend, start.bend), 0.01);  // the slope goes on, and no more
-        EXPECT_LE((ring.at(patch, 0) - ring.places.col(patch.vertices[1])).norm(), 1e-15);
+        EXPECT_LE((ring.at(patch, 0) - ring.places.col(patch.corner(0))).norm(), 1e-15);
       }
     }
   }
@@ -85,7 +84,7 @@ TEST(Curve, ApproachesACircleByTheOrderOfItsKind) {
   const auto farthest = [](int count, Smoothing kind) {
     const Ring ring(count);
     double most = 0;
-    for (const Patch& patch : ring.patches(kind))
+    for (const Patch<2>& patch : ring.patches(kind))
       for (int k = 0; k <= 10; ++k) most = larger(most, std::abs(ring.at(patch, 0.1 * k).norm() - 1));
     return most;
   };
@@ -101,15 +100,15 @@ TEST(Curve, GoesStraightAtFreeEndsAndKeepsCorners) {
   for (int v = 0; v < 8; ++v) facets.push_back({v, (v + 1) % 8});
   const auto where = [&](int v) -> Place { return square.col(v); };
   for (const Smoothing kind : {Smoothing::catmull_rom, Smoothing::b_spline}) {
-    for (const Patch& patch : make_patches(facets, kind, 60, square))  // straight sides stay as they are
+    for (const Patch<2>& patch : make_surface<2>(facets, kind, 60, square))  // straight sides stay as they are
       for (double xi : {0.0, 0.4, 1.0}) {
         const Place at = curve_position<double>(patch, xi, where);
-        const Place a = square.col(patch.vertices[1]), b = square.col(patch.vertices[2]);
+        const Place a = square.col(patch.corner(0)), b = square.col(patch.corner(1));
         EXPECT_NEAR(std::abs((at - a)[0] * (b - a)[1] - (at - a)[1] * (b - a)[0]), 0, 1e-15);
       }
     bool round = false;
-    for (const Patch& patch : make_patches(facets, kind, 120, square))
-      round |= patch.goes_on_before() && patch.goes_on_after();
+    for (const Patch<2>& patch : make_surface<2>(facets, kind, 120, square))
+      round |= patch.goes_on(0) && patch.goes_on(1);
     EXPECT_TRUE(round);
   }
 }
@@ -120,29 +119,30 @@ TEST(Curve, FeetAreAtRightAnglesAndDifferentiateThroughTheirDefinition) {
   const Ring ring(11);
   for (const Smoothing kind : kinds) {
     const auto patches = ring.patches(kind);
-    const CurveSearch search(patches, ring.places);
+    const SurfaceSearch<2> search(patches, ring.places);
     for (double angle : {0.1, 1.3, 4.0})
       for (double radius : {0.97, 1.05}) {
         const Place x(radius * std::cos(angle), radius * std::sin(angle));
         const Facing facing = search.facing(x, Place::Zero());
-        ASSERT_NE(facing.patch, Patch::none);
-        const Patch& patch = patches[facing.patch];
-        const auto foot = foot_on_patch<double>(patch, facing.xi, x, ring.where());
-        EXPECT_NEAR((x - ring.at(patch, foot.xi()) - foot.gap * foot.normal).norm(), 0, 1e-14);
+        ASSERT_NE(facing.patch, no_patch);
+        const Patch<2>& patch = patches[facing.patch];
+        const auto foot = foot_on_patch<double>(patch, facing.at, x, ring.where());
+        EXPECT_NEAR((x - ring.at(patch, foot.place.coordinate()) - foot.gap * foot.normal).norm(), 0, 1e-14);
         EXPECT_NEAR(foot.gap, radius - 1, 0.1);
         // by x: dg = n . dx; complex step through two Newton steps against a difference of feet found anew
         for (int i : {0, 1}) {
           Vec<C, 2> moved(x[0], x[1]);
           moved[i] += C(0, step);
-          const auto c = foot_on_patch<C>(patch, facing.xi, moved,
+          const auto c = foot_on_patch<C>(patch, facing.at, moved,
                                           [&](int v) -> Vec<C, 2> { return ring.places.col(v).cast<C>(); });
           EXPECT_NEAR(c.gap.imag() / step, foot.normal[i], 1e-13);
           const auto xi_at = [&](double h) {
             Place y = x;
             y[i] += h;
-            return foot_on_patch<double>(patch, search.foot_on(facing.patch, y).xi, y, ring.where()).xi();
+            return foot_on_patch<double>(patch, search.foot_on(facing.patch, y).at, y, ring.where()).place.coordinate();
           };
-          EXPECT_NEAR(c.xi().imag() / step, (xi_at(1e-5) - xi_at(-1e-5)) / 2e-5, 1e-7);  // 1e-10 f''' and rounding
+          const double difference = (xi_at(1e-5) - xi_at(-1e-5)) / 2e-5;  // errs by 1e-10 f''' and rounding
+          EXPECT_NEAR(c.place.coordinate().imag() / step, difference, 1e-7);
         }
       }
   }
@@ -154,7 +154,7 @@ TEST(CurveSearch, FindsWhatTryingAllFinds) {
   for (const bool closed : {true, false}) {
     const Ring ring(37, closed);
     const auto patches = ring.patches(Smoothing::none);
-    const CurveSearch search(patches, ring.places);
+    const SurfaceSearch<2> search(patches, ring.places);
     int found = 0;
     for (int n = 0; n < 2000; ++n) {
       const Place x(in_box(random), in_box(random));
@@ -165,12 +165,12 @@ TEST(CurveSearch, FindsWhatTryingAllFinds) {
         if (const double distance = (x - a - xi * tau).norm(); distance < least) least = distance;
       }
       const Facing facing = search.facing(x, Place::Zero());
-      if (facing.patch == Patch::none) {
+      if (facing.patch == no_patch) {
         EXPECT_NEAR(facing.distance, least, 1e-14);
         continue;
       }
       ++found;
-      const Place at = ring.at(patches[facing.patch], std::clamp(facing.xi, 0.0, 1.0));
+      const Place at = ring.at(patches[facing.patch], std::clamp(facing.at[0], 0.0, 1.0));
       EXPECT_NEAR((x - at).norm(), least, 1e-14);
     }
     EXPECT_GT(found, closed ? 1999 : 1500);
@@ -181,12 +181,12 @@ TEST(CurveSearch, HasAContinuousGapAroundCornersOfBothKinds) {  // C24
   // a step: convex at (1, 1), concave at (1, 0); solid on the left of right to left
   Eigen::Matrix2Xd places(2, 4);
   places << 3, 1, 1, -1, 0, 0, 1, 1;
-  const auto patches = make_patches({{0, 1}, {1, 2}, {2, 3}}, Smoothing::none, 60, places);
-  const CurveSearch search(patches, places);
+  const auto patches = make_surface<2>({{0, 1}, {1, 2}, {2, 3}}, Smoothing::none, 60, places);
+  const SurfaceSearch<2> search(patches, places);
   const auto where = [&](int v) -> Place { return places.col(v); };
   const auto gap_at = [&](const Place& x) {
     const Facing facing = search.facing(x, Place::Zero());
-    return foot_on_patch<double>(patches[facing.patch], facing.xi, x, where).gap;
+    return foot_on_patch<double>(patches[facing.patch], facing.at, x, where).gap;
   };
   for (const Place& corner : {Place(1, 1), Place(1, 0)})
     for (double radius : {1e-3, 0.1, 0.3}) {
@@ -204,13 +204,13 @@ TEST(CurveSearch, HasAContinuousGapAroundCornersOfBothKinds) {  // C24
 TEST(CurveSearch, IgnoresSidesThatLookTheSameWayAndWhatLiesPastAnEnd) {
   Eigen::Matrix2Xd strip(2, 4);  // two faces of a thin strip: the lower one looks down, the upper one up
   strip << 0, 1, 1, 0, 0, 0, 0.01, 0.01;
-  const auto patches = make_patches({{0, 1}, {2, 3}}, Smoothing::none, 60, strip);
-  const CurveSearch search(patches, strip);
+  const auto patches = make_surface<2>({{0, 1}, {2, 3}}, Smoothing::none, 60, strip);
+  const SurfaceSearch<2> search(patches, strip);
   const Place just_in(0.5, 0.004);
   EXPECT_EQ(search.facing(just_in, Place(0, -1)).patch, 1);  // of a side that looks down: the upper face
   EXPECT_EQ(search.facing(just_in, Place(0, 1)).patch, 0);
   EXPECT_EQ(search.facing(just_in, Place::Zero()).patch, 0);  // the nearer one
-  EXPECT_EQ(search.facing(Place(1.1, 0.01), Place(0, -1)).patch, Patch::none);
+  EXPECT_EQ(search.facing(Place(1.1, 0.01), Place(0, -1)).patch, no_patch);
   EXPECT_EQ(search.facing(Place(1 + 1e-7, 0.01), Place(0, -1)).patch, 1);
 }
 
@@ -219,20 +219,20 @@ TEST(CurveSearch, FacesNothingWhereATrialIsOutOfBounds) {
   const Ring ring(12);
   for (const Smoothing kind : kinds) {
     const auto patches = ring.patches(kind);
-    const CurveSearch search(patches, ring.places);
+    const SurfaceSearch<2> search(patches, ring.places);
     for (const Place& x : {Place(nan, 0), Place(0, -nan), Place(std::numeric_limits<double>::infinity(), 0)}) {
       const Facing facing = search.facing(x, Place::Zero());
-      EXPECT_EQ(facing.patch, Patch::none);
+      EXPECT_EQ(facing.patch, no_patch);
       EXPECT_FALSE(std::isfinite(facing.distance));
     }
     for (const double bad : {nan, huge}) {
       Eigen::Matrix2Xd places = ring.places;
       places(0, 3) = bad;
       places(0, 7) = -bad;
-      EXPECT_EQ(CurveSearch(patches, places).facing(Place(1.1, 0), Place::Zero()).patch, Patch::none);
+      EXPECT_EQ(SurfaceSearch<2>(patches, places).facing(Place(1.1, 0), Place::Zero()).patch, no_patch);
     }
     const Eigen::Matrix2Xd collapsed = Eigen::Matrix2Xd::Ones(2, 12);
-    EXPECT_EQ(CurveSearch(patches, collapsed).facing(Place(1.1, 0), Place::Zero()).patch, Patch::none);
+    EXPECT_EQ(SurfaceSearch<2>(patches, collapsed).facing(Place(1.1, 0), Place::Zero()).patch, no_patch);
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/contact/curve.hpp"
+#include "core/contact/foot_in_plane.hpp"
 #include "core/contact/rigid_surfaces.hpp"
 #include "core/contact/segments.hpp"
 
@@ -48,13 +48,13 @@ TEST(SmallMotions, OnACircleHaveTheGapOfTheirSecondOrderToo) {
 /// Vertices on a line, as a slab's top that is moved by `size` times something.
 struct Line {
   double distance, size;
-  std::vector<Patch> patches;
+  Surface<2> patches;
   Line(double L, double moved, Smoothing smoothing) : distance(L), size(moved) {
     Eigen::Matrix2Xd places(2, 5);
     std::vector<std::vector<int>> facets;
     for (int v = 0; v < 5; ++v) places.col(v) = start(v);
     for (int v = 0; v < 4; ++v) facets.push_back({v, v + 1});
-    patches = make_patches(facets, smoothing, 60, places);
+    patches = make_surface<2>(facets, smoothing, 60, places);
   }
   /// The line falls by 3/4, so that its facets are no numbers that coordinates have.
   Place start(int vertex) const { return far(distance, -4.0 * vertex, 3.0 * vertex); }
@@ -71,14 +71,15 @@ struct Measured {
 /// Of a node that begins on the patch 1, near its end.
 Measured measured(double distance, double size, Smoothing smoothing) {
   const Line line(distance, size, smoothing);
-  const Patch &patch = line.patches[1], &next = line.patches[2];
+  const Patch<2>&patch = line.patches[1], &next = line.patches[2];
   const Placed<double> x{far(distance, -8, 6), size * Place(0.4, 0.9)}, y{x.start, size * Place(-0.6, 0.8)};
-  const auto foot = foot_on_patch<double, double>(patch, 1, 1, x, line.where());
-  const auto last = foot_on_patch<double, double>(patch, 1, 1, y, line.where());
-  const auto beyond = foot_on_patch<double, double>(next, 0, 0, y, line.where());
+  const Vec<double, 2> start(0, 0), end(1, 0);
+  const auto foot = foot_on_patch<double, double>(patch, {end}, end, x, line.where());
+  const auto last = foot_on_patch<double, double>(patch, {end}, end, y, line.where());
+  const auto beyond = foot_on_patch<double, double>(next, {start}, start, y, line.where());
   const auto along = [&](const Vec<double, 2>& motion) { return motion.dot(Place(-0.8, 0.6)) / size; };
-  return {foot.gap / size, along(foot_motion<double, double>(patch, foot, patch, 1, last.shift, line.where())),
-          along(foot_motion<double, double>(next, beyond, patch, 1, foot.shift, line.where()))};
+  return {foot.gap / size, along(foot_motion<double, double>(last.place, foot, line.where())),
+          along(foot_motion<double, double>(foot.place, beyond, line.where()))};
 }
 
 TEST(SmallMotions, AlongCurvesHaveTheirGapAndSlip) {
@@ -99,13 +100,13 @@ TEST(SmallMotions, BetweenPatchesThatDoNotMeetAreTheVectorBetweenTheirPlaces) {
   for (const auto smoothing : {Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline}) {
     const Line line(8, 0.05, smoothing);
     const Placed<double> x{far(8, -14, 10), Place(0.1, 0.2)};
-    const auto foot = foot_on_patch<double, double>(line.patches[3], 0.25, 0.5, x, line.where());
+    const auto foot = foot_on_patch<double, double>(line.patches[3], {{0.25, 0}}, {0.5, 0}, x, line.where());
     const auto plain = [&](int v) -> Place { return line.vertex(v).start + line.vertex(v).moved; };
     for (const int last : {0, 1, 2, 3}) {
-      const Place motion =
-          foot_motion<double, double>(line.patches[3], foot, line.patches[last], 0.75, -0.5, line.where());
+      const auto start = SurfacePlace<double, 2>::behind(line.patches[last], {{0.75, 0}}, Vec<double, 1>(-0.5));
+      const Place motion = foot_motion<double, double>(start, foot, line.where());
       const Place from = curve_position<double>(line.patches[last], 0.25, plain),
-                  to = curve_position<double>(line.patches[3], foot.xi(), plain);
+                  to = curve_position<double>(line.patches[3], foot.place.coordinate(), plain);
       EXPECT_LE((motion - (to - from)).norm(), 1e-13) << last;  // coordinates of 20
     }
   }

@@ -1,7 +1,5 @@
 /// Smooth surfaces in space: weights, continuity, the tensor products that they are on regular meshes, the search, and
 /// derivatives of a foot against the complex step.
-#include "core/contact/surface.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -10,6 +8,7 @@
 #include <random>
 #include <set>
 
+#include "core/contact/foot_in_space.hpp"
 #include "core/contact/surface_search.hpp"
 #include "core/model/contact_geometry.hpp"
 #include "tests/support/largest.hpp"
@@ -18,14 +17,14 @@ namespace stickslip::surface_test {
 namespace {
 
 struct Net {
-  Points<double> points;
+  Places<3> points;
   std::vector<std::vector<int>> faces;
 };
 
 /// Quadrilaterals over [0, nx] x [0, ny] at height(x, y), each cut into two triangles where `cut(i, j)`.
 template <class Height, class Cut>
 Net sheet(int nx, int ny, Height&& height, Cut&& cut) {
-  Net net{Points<double>(3, (nx + 1) * (ny + 1)), {}};
+  Net net{Places<3>(3, (nx + 1) * (ny + 1)), {}};
   const auto id = [&](int i, int j) { return j * (nx + 1) + i; };
   for (int j = 0; j <= ny; ++j)
     for (int i = 0; i <= nx; ++i) net.points.col(id(i, j)) << i, j, height(i, j);
@@ -57,7 +56,7 @@ Net crumpled() {
 struct At {
   Vec<double, 3> y, normal;
 };
-At at(const SurfacePatch& patch, const Points<double>& points, const Vec<double, 2>& place) {
+At at(const Patch<3>& patch, const Places<3>& points, const Vec<double, 2>& place) {
   const PlaceWeights n = place_weights(patch, place);
   Eigen::Matrix<double, 3, 10> y = Eigen::Matrix<double, 3, 10>::Zero();
   for (std::size_t i = 0; i < patch.vertices.size(); ++i)
@@ -71,7 +70,7 @@ constexpr double no_creases = 179;
 TEST(Surface, WeightsSumToOneAndKeepAffineMaps) {
   const Net net = crumpled();
   for (const Smoothing kind : smooth_kinds)
-    for (const auto& patch : make_surface(net.faces, kind, no_creases, net.points))
+    for (const auto& patch : make_surface<3>(net.faces, kind, no_creases, net.points))
       for (const Vec<double, 2>& place : {Vec<double, 2>(0.2, 0.3), Vec<double, 2>(0, 0), Vec<double, 2>(0.6, 0)}) {
         const auto sums = place_weights(patch, place).colwise().sum().eval();
         EXPECT_NEAR(sums[0], 1, 1e-14);  // (rounding of some twenty products)
@@ -83,14 +82,14 @@ TEST(Surface, NormalsAgreeAcrossEdgesWhereverTheNodesAre) {
   const Net net = crumpled();
   int edges = 0;
   for (const Smoothing kind : smooth_kinds) {
-    const auto patches = make_surface(net.faces, kind, no_creases, net.points);
+    const auto patches = make_surface<3>(net.faces, kind, no_creases, net.points);
     for (const auto& patch : patches)
       for (int k = 0; k < patch.corners; ++k) {
-        if (!patch.goes_on[k]) continue;
+        if (!patch.goes_on(k)) continue;
         ++edges;
-        const SurfacePatch& other = patches[patch.across[k]];
+        const Patch<3>& other = patches[patch.across[k]];
         for (const double share : {0.0, 0.13, 0.5, 0.81, 1.0}) {
-          const auto on = [&](const SurfacePatch& of, int edge, double s) -> Vec<double, 2> {
+          const auto on = [&](const Patch<3>& of, int edge, double s) -> Vec<double, 2> {
             const Vec<double, 2> a = face_corner(of.corners, edge), b = face_corner(of.corners, edge + 1);
             return a + s * (b - a);
           };
@@ -122,7 +121,7 @@ TEST(Surface, OfRegularQuadrilateralsIsATensorProduct) {
   for (Eigen::Index v = 0; v < net.points.cols(); ++v)
     for (int k = 0; k < 3; ++k) net.points(k, v) += by(random);
   for (const Smoothing kind : smooth_kinds) {
-    const auto patch = make_surface(net.faces, kind, no_creases, net.points)[4];  // the one in the middle
+    const auto patch = make_surface<3>(net.faces, kind, no_creases, net.points)[4];  // the one in the middle
     for (const auto& [s, t] : {std::pair(0.3, 0.7), std::pair(0.0, 0.0), std::pair(0.9, 0.05)}) {
       Vec<double, 3> expected = Vec<double, 3>::Zero();
       const auto a = spline(kind, s), b = spline(kind, t);
@@ -143,7 +142,7 @@ TEST(Surface, KeepsPlanesAndSpheres) {
       return n * std::sqrt(1 - x * x - y * y);
     };
     const Net net = sheet(n, n, height, [](int i, int j) { return (i + 2 * j) % 3 == 0; });
-    const auto patches = make_surface(net.faces, Smoothing::catmull_rom, no_creases, net.points);
+    const auto patches = make_surface<3>(net.faces, Smoothing::catmull_rom, no_creases, net.points);
     for (const auto& patch : patches) {
       const At middle = at(patch, net.points, {0.3, 0.3});
       const Vec<double, 3> from = middle.y - Vec<double, 3>(n / 2.0, n / 2.0, 0);
@@ -153,7 +152,7 @@ TEST(Surface, KeepsPlanesAndSpheres) {
     Net flat = sheet(
         n, n, [](int i, int j) { return 0.3 * i - 0.2 * j; }, [](int i, int) { return i % 2 == 0; });
     for (const Smoothing kind : smooth_kinds)
-      for (const auto& patch : make_surface(flat.faces, kind, no_creases, flat.points)) {
+      for (const auto& patch : make_surface<3>(flat.faces, kind, no_creases, flat.points)) {
         const Vec<double, 3> y = at(patch, flat.points, {0.2, 0.6}).y;
         EXPECT_NEAR(y[2], 0.3 * y[0] - 0.2 * y[1], 1e-13);  // rounding
       }
@@ -165,9 +164,9 @@ TEST(Surface, HasCreasesWhereFacesTurn) {
   const Net roof = sheet(
       4, 4, [](int i, int) { return -std::abs(i - 2.0); }, [](int, int) { return false; });
   int creases = 0;
-  for (const auto& patch : make_surface(roof.faces, Smoothing::catmull_rom, 30, roof.points))
+  for (const auto& patch : make_surface<3>(roof.faces, Smoothing::catmull_rom, 30, roof.points))
     for (int k = 0; k < 4; ++k) {
-      const bool is_crease = patch.across[k] != Patch::none && !patch.goes_on[k];
+      const bool is_crease = patch.across[k] != no_patch && !patch.goes_on(k);
       creases += is_crease;
       if (is_crease) {
         EXPECT_NEAR(at(patch, roof.points, {k == 3 ? 0.0 : 1.0, 0.4}).y[0], 2, 1e-13);
@@ -180,14 +179,14 @@ TEST(Surface, IsSmoothAroundTheEndOfACrease) {
   // A ridge that begins inside of a flat sheet and grows towards its border.
   const Net ridge = sheet(
       4, 4, [](int i, int j) { return j == 2 && i > 2 ? 0.5 * (i - 2) : 0.0; }, [](int, int) { return false; });
-  const auto patches = make_surface(ridge.faces, Smoothing::catmull_rom, 20, ridge.points);
+  const auto patches = make_surface<3>(ridge.faces, Smoothing::catmull_rom, 20, ridge.points);
   int ending = 0;
   const int end = 2 * 5 + 2;
   std::vector<Vec<double, 3>> normals;
   for (const auto& patch : patches)
     for (int k = 0; k < 4; ++k) {
       if (patch.vertices[k] == end) normals.push_back(at(patch, ridge.points, face_corner(4, k)).normal);
-      const bool is_crease = patch.across[k] != Patch::none && !patch.goes_on[k];
+      const bool is_crease = patch.across[k] != no_patch && !patch.goes_on(k);
       ending += is_crease && (patch.vertices[k] == end || patch.vertices[(k + 1) % 4] == end);
     }
   EXPECT_EQ(ending, 2);  // one edge, on both of its sides
@@ -196,7 +195,7 @@ TEST(Surface, IsSmoothAroundTheEndOfACrease) {
 }
 
 /// Places all over a surface, 3 x places.
-Eigen::Matrix3Xd samples(const std::vector<SurfacePatch>& patches, const Points<double>& points) {
+Eigen::Matrix3Xd samples(const Surface<3>& patches, const Places<3>& points) {
   std::vector<Vec<double, 3>> all;
   constexpr int n = 25;
   for (const auto& patch : patches)
@@ -214,16 +213,16 @@ TEST(SurfaceSearch, FindsTheNearestPlaceOfSmoothSurfaces) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> along(0.7, 5.3), up(-0.4, 0.4);
   for (const Smoothing kind : smooth_kinds) {
-    const auto patches = make_surface(net.faces, kind, no_creases, net.points);
-    const SurfaceSearch search(patches, net.points);
+    const auto patches = make_surface<3>(net.faces, kind, no_creases, net.points);
+    const SurfaceSearch<3> search(patches, net.points);
     const Eigen::Matrix3Xd all = samples(patches, net.points);
     for (int n = 0; n < 200; ++n) {
       const Vec<double, 3> x(along(random), along(random), up(random));
       const Facing found = search.facing(x, {0, 0, -1});
-      ASSERT_NE(found.patch, Patch::none);
+      ASSERT_NE(found.patch, no_patch);
       const auto& patch = patches[found.patch];
-      for (int k = 0; k < patch.corners; ++k) EXPECT_LE(beyond_edge(patch.corners, k, {found.xi, found.eta}), 1e-8);
-      const At foot = at(patch, net.points, {found.xi, found.eta});
+      for (int k = 0; k < patch.corners; ++k) EXPECT_LE(beyond_edge(patch, k, found.at), 1e-8);
+      const At foot = at(patch, net.points, found.at);
       const Vec<double, 3> off = x - foot.y;
       EXPECT_LE(off.cross(foot.normal).norm(), 1e-8);  // it is a foot: the search ends at 1e-10 of a patch
       double nearest = (all.col(0) - x).norm();
@@ -237,16 +236,16 @@ TEST(SurfaceSearch, EndsAtBordersAndPassesCreasesContinuously) {
   const Net roof = sheet(
       4, 4, [](int i, int) { return -std::abs(i - 2.0); }, [](int, int) { return false; });
   for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline}) {
-    const auto patches = make_surface(roof.faces, kind, 30, roof.points);
-    const SurfaceSearch search(patches, roof.points);
-    EXPECT_EQ(search.facing({1.0, 4.2, 0.0}, {0, 0, -1}).patch, Patch::none);
+    const auto patches = make_surface<3>(roof.faces, kind, 30, roof.points);
+    const SurfaceSearch<3> search(patches, roof.points);
+    EXPECT_EQ(search.facing({1.0, 4.2, 0.0}, {0, 0, -1}).patch, no_patch);
     EXPECT_NEAR(search.facing({1.0, 4.2, -1.0}, {0, 0, -1}).distance, 0.2, 1e-12);
     double last = 0;
     for (int n = 0; n <= 100; ++n) {  // above the ridge, across it
       const Vec<double, 3> x(1.9 + 0.002 * n, 1.3, 0.2);
       const Facing found = search.facing(x, {0, 0, -1});
-      ASSERT_NE(found.patch, Patch::none);
-      const At foot = at(patches[found.patch], roof.points, {found.xi, found.eta});
+      ASSERT_NE(found.patch, no_patch);
+      const At foot = at(patches[found.patch], roof.points, found.at);
       const double gap = (x - foot.y).dot(foot.normal);
       EXPECT_NEAR(gap, (0.2 + std::abs(x[0] - 2)) / std::numbers::sqrt2, 1e-9);  // of the farther of the two planes
       if (n > 0) {
@@ -265,11 +264,11 @@ TEST(SurfaceSearch, EndsAtARidgeWhoseOtherFaceDoesNotOpposeTheSlave) {
   for (Eigen::Index v = 0; v < net.points.cols(); ++v)
     if (net.points(0, v) == 3) net.points(0, v) = 2;  // the wall is upright
   for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom}) {
-    const auto patches = make_surface(net.faces, kind, 30, net.points);
-    const SurfaceSearch search(patches, net.points);
-    EXPECT_NE(search.facing({1.9, 1.0, -0.1}, {0, 0, -1}).patch, Patch::none);
-    EXPECT_EQ(search.facing({2.2, 1.0, -0.1}, {0, 0, -1}).patch, Patch::none);
-    EXPECT_NE(search.facing({2.2, 1.0, -0.1}, {-1, 0, -1}).patch, Patch::none);  // both oppose this one
+    const auto patches = make_surface<3>(net.faces, kind, 30, net.points);
+    const SurfaceSearch<3> search(patches, net.points);
+    EXPECT_NE(search.facing({1.9, 1.0, -0.1}, {0, 0, -1}).patch, no_patch);
+    EXPECT_EQ(search.facing({2.2, 1.0, -0.1}, {0, 0, -1}).patch, no_patch);
+    EXPECT_NE(search.facing({2.2, 1.0, -0.1}, {-1, 0, -1}).patch, no_patch);  // both oppose this one
   }
 }
 
@@ -277,7 +276,7 @@ TEST(Surface, CarriesTangentsWhateverTheirDirections) {
   // What a surface that is sheared and turned makes of tangents e is turned by as much as e are turned.
   const Vec<double, 3> s(1.2, 0.1, 0.05), t(-0.1, 0.8, 0.2);  // slopes of the last increment
   detail::PlacedPoint<double, 3> at;
-  const PatchAround<double> before{Vec<double, 3>::Zero(), s, t},
+  const PatchAround<double, 3> before{Vec<double, 3>::Zero(), s, t},
       now{Vec<double, 3>::Zero(), {1.1, 0.5, -0.2}, {-0.6, 0.9, 0.3}};
   const Vec<double, 3> n0 = before.cross().normalized(),
                        n = (now.cross().normalized() + Vec<double, 3>(0.1, 0, 0)).normalized();
@@ -286,7 +285,7 @@ TEST(Surface, CarriesTangentsWhateverTheirDirections) {
     const Vec<double, 3> a = at.geometry.tangents.col(0), b = at.geometry.tangents.col(1);
     at.geometry.tangents.col(0) = std::cos(angle) * a + std::sin(angle) * b;
     at.geometry.tangents.col(1) = std::cos(angle) * b - std::sin(angle) * a;
-    detail::keep_foot<double>({}, Vec<double, 2>::Zero(), before, at);
+    detail::keep_foot<double, 3>({}, before, at);
     return Vec<double, 3>(detail::carried_tangents<double>(now, at.foot.data(), n).col(0));
   };
   const Vec<double, 3> first = carried(0), across = n.cross(first);
@@ -302,25 +301,25 @@ TEST(Surface, ItsFootHasTheDerivativesOfTheSearch) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-1, 1);
   for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline}) {
-    const auto patches = make_surface(net.faces, kind, no_creases, net.points);
+    const auto patches = make_surface<3>(net.faces, kind, no_creases, net.points);
     Points<double> way(3, net.points.cols());
     for (Eigen::Index v = 0; v < way.cols(); ++v)
       for (int k = 0; k < 3; ++k) way(k, v) = any(random);
     const Vec<double, 3> x(1.37, 2.21, 0.35), x_way(0.3, -0.2, 0.4);
-    const Facing facing = SurfaceSearch(patches, net.points).facing(x, {0, 0, -1});
-    ASSERT_NE(facing.patch, Patch::none);
+    const Facing facing = SurfaceSearch<3>(patches, net.points).facing(x, {0, 0, -1});
+    ASSERT_NE(facing.patch, no_patch);
     constexpr double h = 1e-30;
     const auto vertex = [&](int v) -> Placed<Complex, double, 3> {
       return {net.points.col(v), Vec<Complex, 3>(way.col(v) * Complex(0, h))};
     };
-    const auto foot = foot_on_patch<Complex, double>(patches[facing.patch], {0.2, 0.1}, {facing.xi, facing.eta},
+    const auto foot = foot_on_patch<Complex, double>(patches[facing.patch], {{0.2, 0.1}}, facing.at,
                                                      {x, Vec<Complex, 3>(x_way * Complex(0, h))}, vertex);
     const double step = 1e-5;
     const auto moved = [&](double by) {
-      const Points<double> there = net.points + by * way;
+      const Places<3> there = net.points + by * way;
       const Vec<double, 3> to = x + by * x_way;
-      const Facing found = SurfaceSearch(patches, there).foot_on(facing.patch, to);
-      const At place = at(patches[facing.patch], there, {found.xi, found.eta});
+      const Facing found = SurfaceSearch<3>(patches, there).foot_on(facing.patch, to);
+      const At place = at(patches[facing.patch], there, found.at);
       return std::pair((to - place.y).dot(place.normal), place.normal);
     };
     const auto [gap_up, normal_up] = moved(step);
@@ -336,16 +335,16 @@ TEST(Surface, SmallMotionsOfAFootHaveTheirDigits) {
   const auto wave = [](int i, int j) { return 0.3 * std::sin(0.9 * i) * std::cos(0.7 * j); };
   const Net net = sheet(4, 4, wave, [](int, int) { return false; });
   for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom}) {
-    const auto patches = make_surface(net.faces, kind, no_creases, net.points);
+    const auto patches = make_surface<3>(net.faces, kind, no_creases, net.points);
     // From a node, which four patches share, in four directions: the motion along the surface is what it is.
     const Vec<double, 3> node = net.points.col(12);
-    const SurfaceSearch search(patches, net.points);
+    const SurfaceSearch<3> search(patches, net.points);
     const auto starts = patches_at(patches, search.facing(node, {0, 0, -1}));
     ASSERT_EQ(starts.size(), 4U);
-    const auto reference = [&](int patch) -> Vec<double, 2> {
+    const auto reference = [&](int patch) -> FootReference {
       for (const auto& start : starts)
-        if (start.patch == patch) return {start.xi, start.eta};
-      return {0, 0};
+        if (start.patch == patch) return {start.at, true};
+      return {};
     };
     const auto vertex = [&](int v) -> Placed<double, double, 3> { return {net.points.col(v), Vec<double, 3>::Zero()}; };
     for (const double size : {1e-3, 1e-9, 1e-15})
@@ -353,11 +352,11 @@ TEST(Surface, SmallMotionsOfAFootHaveTheirDigits) {
            {std::pair(1.0, 0.6), std::pair(-1.0, 0.3), std::pair(-0.2, -1.0), std::pair(1.0, -0.4)}) {
         const Vec<double, 3> by = size * Vec<double, 3>(a, b, 0);
         const Facing found = search.facing(node + by, {0, 0, -1});
-        const auto foot = foot_on_patch<double, double>(patches[found.patch], reference(found.patch),
-                                                        {found.xi, found.eta}, {node, by}, vertex);
-        const SurfacePlace<double> start{&patches[starts[0].patch], reference(starts[0].patch)};
-        const Vec<double, 3> motion = surface_motion<double, double>(start, reference(starts[0].patch), foot.place,
-                                                                     reference(found.patch), true, vertex);
+        const auto foot =
+            foot_on_patch<double, double>(patches[found.patch], reference(found.patch), found.at, {node, by}, vertex);
+        const auto start =
+            SurfacePlace<double, 3>::behind(patches[starts[0].patch], reference(starts[0].patch), {0, 0});
+        const Vec<double, 3> motion = foot_motion<double, double>(start, foot, vertex);
         const Vec<double, 3> normal = foot.normal, expected = by - by.dot(normal) * normal;
         // the surface turns along the way, by the second order; and rounding of the way
         EXPECT_LE((motion - expected).norm(), (2 * size + 1e-12) * size) << size;

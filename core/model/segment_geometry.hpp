@@ -1,5 +1,4 @@
-/// Geometry of contact points along master curves of the plane, node by node and over the segments of curves and of
-/// obstacles.
+/// Geometry of segment-integrated contact points, along master curves of the plane and against obstacles.
 #pragma once
 
 #include "core/model/placed_point.hpp"
@@ -8,7 +7,7 @@ namespace stickslip::detail {
 
 /// Slots::arcs of a curve.
 template <class T>
-Vector<T> arcs_of(const Model& model, const MasterCurve& curve, const Slots<T>& slots) {
+Vector<T> arcs_of(const Model& model, const MasterSurface& curve, const Slots<T>& slots) {
   if (!curve.is_integrated()) return {};
   Vector<T> arcs(static_cast<Eigen::Index>(curve.facets.size()) + 1);
   arcs[0] = T(0);
@@ -26,7 +25,7 @@ inline int facet_of_arcs(const ContactPoint& point) { return std::max(point.faci
 /// at its slave node. Arc lengths are measured from there, so that those of small motions are small.
 template <class T>
 double origin_of_arcs(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
-  const auto& curve = model.curves[point.curve];
+  const auto& curve = model.surfaces[point.surface];
   const auto& facet = curve.facets[facet_of_arcs(point)];
   const auto place = [&](int node) -> Vec<double, 2> { return values(start_of(model, curve.obstacle, slots, node)); };
   const Vec<double, 2> c = place(facet[0]), tau = place(facet[1]) - c;
@@ -37,8 +36,8 @@ double origin_of_arcs(const Model& model, const ContactPoint& point, const Slots
 /// facet near it; on a closed curve the way to `first` is the shorter one.
 template <class T>
 T arc_to(const Model& model, const ContactPoint& point, const Slots<T>& slots, int first, int facet) {
-  const auto& curve = model.curves[point.curve];
-  const Vector<T>& arcs = slots.arcs[point.curve];
+  const auto& curve = model.surfaces[point.surface];
+  const Vector<T>& arcs = slots.arcs[point.surface];
   const int count = static_cast<int>(curve.facets.size()), origin = facet_of_arcs(point);
   const auto way = [&](int from, int to) {
     const bool is_longer = curve.is_loop() && 2 * std::abs(to - from) > count;
@@ -49,57 +48,21 @@ T arc_to(const Model& model, const ContactPoint& point, const Slots<T>& slots, i
   return turns == 0 ? arc : T(arc + T(static_cast<double>(turns)) * arcs[count]);
 }
 
-/// Coordinate on a patch from which the foot of a point is measured: that of its foot at the start, and on the patch
-/// before this one its end. So a small motion makes a small difference, also across a vertex.
-inline double foot_reference(const Model& model, const ContactPoint& point, int patch) {
-  const Facing& start = point.facing;
-  if (patch == start.patch) return start.xi;
-  return start.patch != Patch::none && model.curves[point.curve].patches[start.patch].previous == patch ? 1 : 0;
-}
-
-/// Placement along its curve of a point that faces nothing of it, as History::foot stores it: from there it slides in
-/// the increment in which it comes to face the curve. It is the place of the patch `nearest` that is nearest to the
-/// slave node; for a segment-integrated point past a free end, where such a point comes on.
+/// Placement of a segment-integrated point that faces nothing of its curve, as History::foot stores it: that of the
+/// place xi of the facet `nearest`; past a free end, where such a point comes on.
 template <class U, class T, class Displacement>
-U place_beside(const Positions<U, T, Displacement>& positions, const ContactPoint& point, int nearest) {
+U arc_beside(const Positions<U, T, Displacement>& positions, const ContactPoint& point, int nearest, const U& xi) {
   const Model& model = positions.model;
   const Slots<T>& slots = positions.slots;
-  const auto& curve = model.curves[point.curve];
-  const auto& patch = curve.patches[nearest];
-  const U xi = beside_facet<U, T>(positions.slave(point), positions.vertex(curve, patch.vertices[1]),
-                                  positions.vertex(curve, patch.vertices[2]));
-  if (!curve.is_integrated()) return xi - U(foot_reference(model, point, nearest));
+  const MasterSurface& curve = model.surfaces[point.surface];
+  const auto& across = curve.patches<2>()[nearest].across;
   const auto of_start = [&](int node) { return start_of(model, point.obstacle, slots, node); };
   const auto& facet = curve.facets[nearest];
   const U place = U(arc_to(model, point, slots, nearest, nearest) - T(origin_of_arcs(model, point, slots))) +
                   xi * U(norm(Vec<T, 2>(of_start(facet[1]) - of_start(facet[0]))));
-  if (value(xi) <= 0 && patch.previous == Patch::none)
-    return place - U(way_outside_of_end<T>(point.segments, 1, of_start));
-  if (value(xi) >= 1 && patch.next == Patch::none) return place + U(way_outside_of_end<T>(point.segments, 0, of_start));
+  if (value(xi) <= 0 && across[0] == no_patch) return place - U(way_outside_of_end<T>(point.segments, 1, of_start));
+  if (value(xi) >= 1 && across[1] == no_patch) return place + U(way_outside_of_end<T>(point.segments, 0, of_start));
   return place;
-}
-
-/// Geometry of a point against its curve.
-template <class U, class T, class Displacement>
-PlacedPoint<U, 2> on_curve(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
-                           const Facing& facing, const Earlier<T>& earlier) {
-  const Model& model = positions.model;
-  const auto& curve = model.curves[point.curve];
-  const auto vertex = [&](int v) { return positions.vertex(curve, v); };
-  const Patch& patch = curve.patches[facing.patch];
-  PlacedPoint<U, 2> at;
-  const auto foot =
-      foot_on_patch<U, T>(patch, foot_reference(model, point, facing.patch), facing.xi, positions.slave(point), vertex);
-  at.geometry.gap = foot.gap + U(offset_of(point, model, positions.slots));
-  at.geometry.normal = foot.normal;
-  at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
-  at.geometry.weights = foot_weights(patch, foot.weights, curve.obstacle >= 0);
-  at.geometry.area = U(earlier.start ? earlier.start->area : whole_area(point, positions.slots));
-  at.foot[0] = foot.shift;
-  if (earlier.patch != Patch::none)
-    at.foot_motion = foot_motion<U, T>(patch, foot, curve.patches[earlier.patch],
-                                       foot_reference(model, point, earlier.patch), *earlier.foot, vertex);
-  return at;
 }
 
 /// Foot on an obstacle of a place of a segment, X displaced by u.
@@ -122,7 +85,7 @@ PlacedPoint<U, 2> on_segments(const Positions<U, T, Displacement>& positions, co
                               const Facing& facing, const Earlier<T>& earlier) {
   const Model& model = positions.model;
   const Slots<T>& slots = positions.slots;
-  const bool along_curve = point.curve >= 0;
+  const bool along_curve = point.surface >= 0;
   const auto number = [&](const Number& n) { return U(slots.numbers(n)); };
   const Frame<T, 2> frame =
       along_curve || point.obstacle < 0 ? Frame<T, 2>{} : positions.template frame<2>(point.obstacle);
@@ -147,11 +110,11 @@ PlacedPoint<U, 2> on_segments(const Positions<U, T, Displacement>& positions, co
   at.foot.template head<2>() = kinematics.foot;
   if (earlier.foot && !along_curve) {
     at.foot_motion = Vec<U, 2>(at.foot[0] - U(earlier.foot[0]), at.foot[1] - U(earlier.foot[1]));
-  } else if (earlier.patch != Patch::none) {
+  } else if (earlier.patch != no_patch) {
     U length = at.foot[0] - U(earlier.foot[0]);
-    const Vector<T>& arcs = slots.arcs[point.curve];
+    const Vector<T>& arcs = slots.arcs[point.surface];
     const T& whole = arcs[arcs.size() - 1];
-    const double turns = model.curves[point.curve].is_loop() ? std::round(value(length) / value(whole)) : 0;
+    const double turns = model.surfaces[point.surface].is_loop() ? std::round(value(length) / value(whole)) : 0;
     if (turns != 0) length -= U(turns) * U(whole);
     for (int i = 0; i < 2; ++i) at.foot_motion[i] = kinematics.tangent[i] * length;
   }

@@ -1,24 +1,13 @@
-#include "core/contact/surface_search.hpp"
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/contact/foot_in_space.hpp"
+#include "core/contact/surface_search.hpp"
+
 namespace stickslip {
 namespace {
-
-/// Share of a patch by which a foot may lie past a border, as past the end of a curve. Why: at a border the normal is
-/// that of one side, so a node in a plane of symmetry, where a body is cut, projects a little past it.
-constexpr double past_edge = 0.01;
-
-Vec<double, 2> place_of(const Facing& facing) { return {facing.xi, facing.eta}; }
-
-/// The place of an edge at a share of it, from its first corner.
-Vec<double, 2> on_edge(int corners, int edge, double share) {
-  const Vec<double, 2> from = face_corner(corners, edge), to = face_corner(corners, edge + 1);
-  return from + share * (to - from);
-}
 
 /// Share of an edge at which a place near it is.
 double along_edge(int corners, int edge, const Vec<double, 2>& at) {
@@ -26,40 +15,36 @@ double along_edge(int corners, int edge, const Vec<double, 2>& at) {
   return std::clamp((at - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
 }
 
-std::vector<FacePlace> faces_of(const std::vector<SurfacePatch>& patches) {
+std::vector<FacePlace> faces_of(const Surface<3>& patches) {
   std::vector<FacePlace> faces;
-  for (const auto& patch : patches) {
-    auto& face = faces.emplace_back();
-    face.corners = patch.corners;
-    std::copy_n(patch.vertices.begin(), patch.corners, face.nodes.begin());
-  }
+  for (const auto& patch : patches) faces.push_back(face_of(patch));
   return faces;
 }
 
-std::vector<std::array<char, 4>> borders_of(const std::vector<SurfacePatch>& patches) {
+std::vector<std::array<char, 4>> borders_of(const Surface<3>& patches) {
   std::vector<std::array<char, 4>> borders;
   for (const auto& patch : patches) {
     auto& border = borders.emplace_back();
-    for (int k = 0; k < patch.corners; ++k) border[k] = patch.across[k] == Patch::none;
+    for (int k = 0; k < patch.corners; ++k) border[k] = patch.across[k] == no_patch;
   }
   return borders;
 }
 
-Facing facing_on_edge(const std::vector<SurfacePatch>& patches, int patch, int edge, double share) {
-  const Vec<double, 2> at = on_edge(patches[patch].corners, edge, share);
-  Facing facing{patch, at[0]};
-  facing.eta = at[1];
-  return facing;
+/// The place of an edge at a share of it, from its first corner.
+Facing facing_on_edge(const Surface<3>& patches, int patch, int edge, double share) {
+  const int corners = patches[patch].corners;
+  const Vec<double, 2> from = face_corner(corners, edge), to = face_corner(corners, edge + 1);
+  return {patch, from + share * (to - from)};
 }
 
 }  // namespace
 
-std::vector<Facing> patches_at(const std::vector<SurfacePatch>& patches, Facing facing, double within) {
+std::vector<Facing> patches_at(const Surface<3>& patches, Facing facing, double within) {
   const auto is_on = [&](const Facing& at, int k) {
-    return std::abs(beyond_edge(patches[at.patch].corners, k, place_of(at))) <= within;
+    return std::abs(beyond_edge(patches[at.patch], k, at.at)) <= within;
   };
   const auto share_of = [&](const Facing& at, int k) {  // at a corner all of it
-    const double share = along_edge(patches[at.patch].corners, k, place_of(at));
+    const double share = along_edge(patches[at.patch].corners, k, at.at);
     return share <= within ? 0 : share >= 1 - within ? 1 : share;
   };
   for (int k = 0; k < patches[facing.patch].corners; ++k)
@@ -69,7 +54,7 @@ std::vector<Facing> patches_at(const std::vector<SurfacePatch>& patches, Facing 
     const Facing at = all[i];
     for (int k = 0; k < patches[at.patch].corners; ++k) {
       const int next = patches[at.patch].across[k];
-      if (next == Patch::none || !is_on(at, k)) continue;
+      if (next == no_patch || !is_on(at, k)) continue;
       if (std::any_of(all.begin(), all.end(), [&](const Facing& other) { return other.patch == next; })) continue;
       all.push_back(facing_on_edge(patches, next, patches[at.patch].across_edge[k], 1 - share_of(at, k)));
     }
@@ -77,18 +62,18 @@ std::vector<Facing> patches_at(const std::vector<SurfacePatch>& patches, Facing 
   return all;
 }
 
-std::array<Facing, 2> places_on_edge(const std::vector<SurfacePatch>& patches, const Facing& facing, int edge) {
-  const SurfacePatch& patch = patches[facing.patch];
-  const double share = along_edge(patch.corners, edge, place_of(facing));
+std::array<Facing, 2> places_on_edge(const Surface<3>& patches, const Facing& facing, int edge) {
+  const Patch<3>& patch = patches[facing.patch];
+  const double share = along_edge(patch.corners, edge, facing.at);
   return {facing_on_edge(patches, facing.patch, edge, share),
           facing_on_edge(patches, patch.across[edge], patch.across_edge[edge], 1 - share)};
 }
 
-SurfaceSearch::SurfaceSearch(const std::vector<SurfacePatch>& patches, const Points<double>& positions)
+PatchSearch<3>::PatchSearch(const Surface<3>& patches, const Places<3>& positions)
     : patches_(patches), positions_(positions), faces_(positions, faces_of(patches), borders_of(patches)) {}
 
 /// Vectors from x to the vertices of a patch.
-Eigen::Matrix3Xd SurfaceSearch::arms(int patch, const Vec<double, 3>& x) const {
+Eigen::Matrix3Xd PatchSearch<3>::arms(int patch, const Vec<double, 3>& x) const {
   const auto& vertices = patches_[patch].vertices;
   Eigen::Matrix3Xd arms(3, static_cast<Eigen::Index>(vertices.size()));
   for (std::size_t i = 0; i < vertices.size(); ++i)
@@ -96,19 +81,19 @@ Eigen::Matrix3Xd SurfaceSearch::arms(int patch, const Vec<double, 3>& x) const {
   return arms;
 }
 
-double SurfaceSearch::gap(const Facing& at, const Vec<double, 3>& x) const {
-  const Eigen::Matrix3Xd y = arms(at.patch, x) * place_weights(patches_[at.patch], place_of(at)).leftCols<3>();
+double PatchSearch<3>::gap(const Facing& at, const Vec<double, 3>& x) const {
+  const Eigen::Matrix3Xd y = arms(at.patch, x) * place_weights(patches_[at.patch], at.at).leftCols<3>();
   return -y.col(0).dot(cross<double>(y.col(1), y.col(2)).normalized());
 }
 
 /// Newton's method for the foot of x, from the start value `at`. It may pass to the next patch, `hops` times at most,
 /// where the two patches join smoothly. patch = none if it does not end, or x is beyond a centre of curvature.
-Facing SurfaceSearch::newton_foot(Facing at, const Vec<double, 3>& x, int hops) const {
+Facing PatchSearch<3>::newton_foot(Facing at, const Vec<double, 3>& x, int hops) const {
   constexpr int most = 50;
   constexpr double longest = 0.5, settled = 1e-10, farthest = 1;
   for (int step = 0; step < most; ++step) {
-    const SurfacePatch& patch = patches_[at.patch];
-    const Vec<double, 2> from = place_of(at);
+    const Patch<3>& patch = patches_[at.patch];
+    const Vec<double, 2> from = at.at;
     const PlaceWeights weights = place_weights(patch, from);
     const Eigen::Matrix3Xd around = arms(at.patch, x);
     const Eigen::Matrix3Xd y = around * weights.leftCols<3>();
@@ -124,40 +109,36 @@ Facing SurfaceSearch::newton_foot(Facing at, const Vec<double, 3>& x, int hops) 
     if (!(length < std::numeric_limits<double>::infinity())) return {};
     if (length <= settled) return is_minimum ? at : Facing{};
     if (length > longest) move *= longest / length;
-    Vec<double, 2> to = from + move;
-    int crossed = Patch::none;
+    const Vec<double, 2> to = from + move;
+    int crossed = no_patch;
     double earliest = std::numeric_limits<double>::infinity();
     for (int k = 0; k < patch.corners && hops > 0; ++k) {
-      const double before = beyond_edge(patch.corners, k, from), after = beyond_edge(patch.corners, k, to);
-      if (!patch.goes_on[k] || after <= at_face_edge || after <= before) continue;
+      const double before = beyond_edge(patch, k, from), after = beyond_edge(patch, k, to);
+      if (!patch.goes_on(k) || after <= at_face_edge || after <= before) continue;
       const double share = std::max(0.0, -before) / (after - before);
       if (share < earliest) {
         earliest = share;
         crossed = k;
       }
     }
-    if (crossed != Patch::none) {
+    if (crossed != no_patch) {
       const Vec<double, 2> place = from + std::min(earliest, 1.0) * move;
-      Facing leaving{at.patch, place[0]};
-      leaving.eta = place[1];
-      at = places_on_edge(patches_, leaving, crossed)[1];
+      at = places_on_edge(patches_, {at.patch, place}, crossed)[1];
       --hops;
       continue;
     }
-    for (int i = 0; i < 2; ++i) to[i] = std::clamp(to[i], -farthest, 1 + farthest);
-    at.xi = to[0];
-    at.eta = to[1];
+    for (int i = 0; i < 2; ++i) at.at[i] = std::clamp(to[i], -farthest, 1 + farthest);
   }
   return {};
 }
 
-Facing SurfaceSearch::larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const {
+Facing PatchSearch<3>::larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const {
   Facing best;
   double largest = -std::numeric_limits<double>::infinity();
   for (const Facing& foot : feet) {
-    if (foot.patch == Patch::none) continue;
+    if (foot.patch == no_patch) continue;
     const double of_foot = gap(foot, x), rounding = at_face_edge * std::abs(largest);
-    const bool is_larger = best.patch == Patch::none || of_foot > largest + rounding;
+    const bool is_larger = best.patch == no_patch || of_foot > largest + rounding;
     if (!is_larger && (of_foot < largest - rounding || foot.patch > best.patch)) continue;
     best = foot;
     largest = of_foot;
@@ -165,45 +146,42 @@ Facing SurfaceSearch::larger_gap(const std::vector<Facing>& feet, const Vec<doub
   return best;
 }
 
-bool SurfaceSearch::is_eligible(int patch, const Query& query) const {
+bool PatchSearch<3>::is_eligible(int patch, const Query& query) const {
   if (query.outward == Vec<double, 3>::Zero()) return true;
   const auto corner = [&](int k) -> Vec<double, 3> { return positions_.col(patches_[patch].vertices[k]); };
   return area_vector<double>(patches_[patch].corners, corner).dot(query.outward) < 0;
 }
 
 /// Whether a foot is beyond an edge at which the eligible patches end.
-bool SurfaceSearch::is_past_end(const Facing& at, const Query& query) const {
-  const SurfacePatch& patch = patches_[at.patch];
+bool PatchSearch<3>::is_past_end(const Facing& at, const Query& query) const {
+  const Patch<3>& patch = patches_[at.patch];
   for (int k = 0; k < patch.corners; ++k) {
-    const bool ends = !patch.goes_on[k] && (patch.across[k] == Patch::none || !is_eligible(patch.across[k], query));
-    if (ends && beyond_edge(patch.corners, k, place_of(at)) > past_edge) return true;
+    const bool ends = !patch.goes_on(k) && (patch.across[k] == no_patch || !is_eligible(patch.across[k], query));
+    if (ends && beyond_edge(patch, k, at.at) > past_end_of_surface) return true;
   }
   return false;
 }
 
 /// What x faces if its foot on a patch lies past an edge at which the surface is not smooth.
-Facing SurfaceSearch::beyond_edges(const Facing& at, const Query& query) const {
-  const SurfacePatch& patch = patches_[at.patch];
+Facing PatchSearch<3>::beyond_edges(const Facing& at, const Query& query) const {
+  const Patch<3>& patch = patches_[at.patch];
   if (is_past_end(at, query)) return {};
   std::vector<Facing> feet{at};
   for (int k = 0; k < patch.corners; ++k) {
     const int next = patch.across[k];
-    if (patch.goes_on[k] || beyond_edge(patch.corners, k, place_of(at)) <= at_face_edge) continue;
-    if (next != Patch::none && is_eligible(next, query))
+    if (patch.goes_on(k) || beyond_edge(patch, k, at.at) <= at_face_edge) continue;
+    if (next != no_patch && is_eligible(next, query))
       feet.push_back(newton_foot(places_on_edge(patches_, at, k)[1], query.x, 0));
   }
   return feet.size() == 1 ? at : larger_gap(feet, query.x);
 }
 
-Facing SurfaceSearch::nearest_facing(const Query& query) const {
+Facing PatchSearch<3>::nearest_facing(const Query& query) const {
   constexpr int hops = 8;
+  if (!query.x.allFinite()) return {};
   const auto near = faces_.nearest(query.x, query.outward);
   if (near.empty()) return {};
-  const auto foot = [&](const Near& from, int most) {
-    Facing start{from.face, from.place.at[0]};
-    start.eta = from.place.at[1];
-    return newton_foot(start, query.x, most);
-  };
+  const auto foot = [&](const Near& from, int most) { return newton_foot({from.face, from.place.at}, query.x, most); };
   const Near* first = &near.front();
   for (const Near& at : near) {
     const bool is_inside = at.place.part == FacePart::inside, has_inside = first->place.part == FacePart::inside;
@@ -211,41 +189,23 @@ Facing SurfaceSearch::nearest_facing(const Query& query) const {
   }
   if (patches_[first->face].is_smooth()) {
     const Facing at = foot(*first, hops);
-    return at.patch == Patch::none ? at : beyond_edges(at, query);
+    return at.patch == no_patch ? at : beyond_edges(at, query);
   }
   if (first->place.part == FacePart::inside) return foot(*first, 0);
   std::vector<Facing> feet;
   for (const Near& at : near) {
     const Facing there = foot(at, 0);
-    if (there.patch != Patch::none && !is_past_end(there, query)) feet.push_back(there);
+    if (there.patch != no_patch && !is_past_end(there, query)) feet.push_back(there);
   }
   return larger_gap(feet, query.x);
 }
 
-Facing SurfaceSearch::facing(const Vec<double, 3>& x, const Vec<double, 3>& outward) const {
-  const Vec<double, 3> any = Vec<double, 3>::Zero();
-  Facing at;
-  at.distance = std::numeric_limits<double>::infinity();
-  if (!x.allFinite()) return at;
-  const Facing found = nearest_facing({x, outward});
-  if (found.patch != Patch::none) {
-    if (gap(found, x) >= 0 || outward == any) return found;
-    const Facing nearest = nearest_facing({x, any});
-    if (nearest.patch == Patch::none || gap(nearest, x) < 0) return found;
-  }
-  const auto near = faces_.nearest(x, any);
-  if (near.empty()) return at;
+Facing PatchSearch<3>::facing_nothing(const Vec<double, 3>& x) const {
+  const auto near = x.allFinite() ? faces_.nearest(x, Vec<double, 3>::Zero()) : std::vector<Near>();
+  if (near.empty()) return {.distance = std::numeric_limits<double>::infinity()};
   const auto first =
       std::min_element(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.face < b.face; });
-  at.distance = first->distance;
-  at.nearest = first->face;
-  return at;
-}
-
-Facing SurfaceSearch::foot_on(int patch, const Vec<double, 3>& x) const {
-  Facing start{patch, patches_[patch].corners == 3 ? 1.0 / 3 : 0.5};
-  start.eta = start.xi;
-  return newton_foot(start, x, 0);
+  return {.distance = first->distance, .nearest = first->face};
 }
 
 }  // namespace stickslip

@@ -1,4 +1,4 @@
-#include "core/model/master_curve.hpp"
+#include "core/model/master_surface.hpp"
 
 #include <algorithm>
 #include <map>
@@ -61,28 +61,27 @@ std::vector<std::vector<int>> ordered_facets(const std::vector<std::vector<int>>
 }
 
 /// Sets what the vertices of a curve in contact with itself may face.
-void set_own_vertices(const Eigen::Matrix2Xd& places, MasterCurve& curve) {
-  for (std::size_t p = 0; p < curve.patches.size(); ++p) {
-    const Patch& patch = curve.patches[p];
-    for (int vertex : {patch.vertices[1], patch.vertices[2]}) {
+void set_own_vertices(const Eigen::Matrix2Xd& places, MasterSurface& curve) {
+  const Surface<2>& patches = curve.patches<2>();
+  for (const Patch<2>& patch : patches)
+    for (int vertex : {patch.corner(0), patch.corner(1)}) {
       if (curve.own.count(curve.nodes[vertex]) > 0) continue;
       Vec<double, 2> outward = Vec<double, 2>::Zero();
       double size = 0;
       int count = 0;
-      for (const Patch& at : curve.patches)
-        if (at.vertices[1] == vertex || at.vertices[2] == vertex) {
-          const Vec<double, 2> along = places.col(at.vertices[2]) - places.col(at.vertices[1]);
+      for (const Patch<2>& at : patches)
+        if (at.corner(0) == vertex || at.corner(1) == vertex) {
+          const Vec<double, 2> along = places.col(at.corner(1)) - places.col(at.corner(0));
           outward += Vec<double, 2>(along[1], -along[0]);
           size += along.norm();
           ++count;
         }
-      curve.own.emplace(curve.nodes[vertex], own_vertex(curve.patches, places, vertex, outward, size / count));
+      curve.own.emplace(curve.nodes[vertex], own_vertex(patches, places, vertex, outward, size / count));
     }
-  }
 }
 
 /// Numbers the nodes of facets as vertices of a curve, in the order in which they come.
-void number_vertices(std::vector<std::vector<int>>& facets, MasterCurve& curve) {
+void number_vertices(std::vector<std::vector<int>>& facets, MasterSurface& curve) {
   std::map<int, int> number;
   for (auto& facet : facets)
     for (int& node : facet) {
@@ -119,61 +118,58 @@ std::vector<std::vector<int>> facets_of(const Polyline& polyline) {
   return facets;
 }
 
-std::pair<MasterCurve, Eigen::Matrix2Xd> make_curve(const Model& model, const Points<double>& points, int contact_index,
-                                                    int obstacle, std::vector<std::vector<int>> facets) {
+template <int D>
+std::pair<MasterSurface, Places<D>> make_master(const Model& model, const Points<double>& points, int contact_index,
+                                                int obstacle, std::vector<std::vector<int>> facets) {
   const Contact& contact = model.scene.contacts[contact_index];
-  MasterCurve curve;
-  curve.contact = contact_index;
-  curve.obstacle = obstacle;
-  Eigen::Matrix2Xd places;
-  if (obstacle >= 0) {
-    const auto& polyline = std::get<Polyline>(model.scene.obstacles[obstacle].shape);
-    places = vertices_of(polyline, model.scene.as<double>());
-    facets = facets_of(polyline);
-    if (contact.segment) std::reverse(facets.begin(), facets.end());  // each begins where the one before ends
-  } else {
-    if (contact.is_of_itself() || contact.segment) facets = ordered_facets(facets, points);
-    number_vertices(facets, curve);
-    places.resize(2, static_cast<Eigen::Index>(curve.nodes.size()));
-    for (std::size_t v = 0; v < curve.nodes.size(); ++v)
-      places.col(static_cast<Eigen::Index>(v)) = points.col(curve.nodes[v]).head<2>();
+  MasterSurface master;
+  master.contact = contact_index;
+  master.obstacle = obstacle;
+  Places<D> places;
+  if constexpr (D == 2) {
+    if (obstacle >= 0) {
+      const auto& polyline = std::get<Polyline>(model.scene.obstacles[obstacle].shape);
+      places = vertices_of(polyline, model.scene.as<double>());
+      facets = facets_of(polyline);
+      if (contact.segment) std::reverse(facets.begin(), facets.end());  // each begins where the one before ends
+    } else if (contact.is_of_itself() || contact.segment) {
+      facets = ordered_facets(facets, points);
+    }
   }
-  curve.vertex_count = static_cast<int>(places.cols());
-  curve.patches = make_patches(facets, contact.smoothing, contact.corner, places);
-  return {std::move(curve), std::move(places)};
-}
-
-std::pair<MasterCurve, Points<double>> make_surface_of(const Model& model, const Points<double>& points,
-                                                       int contact_index, std::vector<std::vector<int>> facets) {
-  const Contact& contact = model.scene.contacts[contact_index];
-  MasterCurve surface;
-  surface.contact = contact_index;
-  number_vertices(facets, surface);
-  surface.vertex_count = static_cast<int>(surface.nodes.size());
-  Points<double> places(3, surface.vertex_count);
-  for (int v = 0; v < surface.vertex_count; ++v) places.col(v) = points.col(surface.nodes[v]);
+  if (obstacle < 0) {
+    number_vertices(facets, master);
+    places.resize(D, static_cast<Eigen::Index>(master.nodes.size()));
+    for (std::size_t v = 0; v < master.nodes.size(); ++v)
+      places.col(static_cast<Eigen::Index>(v)) = points.col(master.nodes[v]).template head<D>();
+  }
+  master.vertex_count = static_cast<int>(places.cols());
   try {
-    surface.surface = make_surface(facets, contact.smoothing, contact.corner, places);
+    master.surface = make_surface<D>(facets, contact.smoothing, contact.corner, places);
   } catch (const std::runtime_error& error) {
     throw ModelError(contact.master + ": " + error.what(), "/contacts/" + contact.name + "/master");
   }
-  return {std::move(surface), std::move(places)};
+  return {std::move(master), std::move(places)};
 }
 
-MasterCurve integrated_curve(const Model& model, const Points<double>& points, int contact, int obstacle,
-                             const SideSet& master) {
-  auto [curve, places] = make_curve(model, points, contact, obstacle, master.facets);
+template std::pair<MasterSurface, Places<2>> make_master<2>(const Model&, const Points<double>&, int, int,
+                                                            std::vector<std::vector<int>>);
+template std::pair<MasterSurface, Places<3>> make_master<3>(const Model&, const Points<double>&, int, int,
+                                                            std::vector<std::vector<int>>);
+
+MasterSurface integrated_curve(const Model& model, const Points<double>& points, int contact, int obstacle,
+                               const SideSet& master) {
+  auto [curve, places] = make_master<2>(model, points, contact, obstacle, master.facets);
   if (model.scene.contacts[contact].is_of_itself()) set_own_vertices(places, curve);
   const QuadraticEdges edges(master);
   const auto node_of = [&, &nodes = curve.nodes](int vertex) {
     return obstacle >= 0 ? model.node_count + vertex : nodes[vertex];
   };
-  for (const auto& patch : curve.patches) {
-    const int begin = node_of(patch.vertices[1]), end = node_of(patch.vertices[2]);
+  for (const auto& patch : curve.patches<2>()) {
+    const int begin = node_of(patch.corner(0)), end = node_of(patch.corner(1));
     curve.facets.push_back({begin, end});
     curve.edges.push_back(edges.of_facet(begin, end));
-    if (patch.previous == Patch::none) curve.ends.push_back(begin);
-    if (patch.next == Patch::none) curve.ends.push_back(end);
+    if (patch.across[0] == no_patch) curve.ends.push_back(begin);
+    if (patch.across[1] == no_patch) curve.ends.push_back(end);
   }
   return curve;
 }
