@@ -7,12 +7,16 @@ namespace stickslip {
 double elastic_traction(const Slots<double>& slots, int p) { return slots.stiffness[p] / slots.geometry[p].area; }
 
 double traction_scale(const Model& model, const Slots<double>& slots, const State<double>& state) {
+  // A motion leaves errors of 1e-12 of itself in a gap. Without a pressure nothing else gives the gaps and slips of a
+  // state their size. A body that comes from afar has moved a thousand times as far as its pressure would move it.
+  constexpr double of_motion = 1e-12 / weak_margin;
   double largest = 0;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
     const double elastic = elastic_traction(slots, p);
     const auto moved = state.history.placement.segment(tangential_offset(model, p), model.points[p].tangents);
     largest = std::max({largest, -state.contact.traction[model.points[p].multiplier],
-                        elastic * std::abs(state.contact.gap[p] - slots.geometry[p].gap), elastic * norm(moved)});
+                        of_motion * elastic * std::abs(state.contact.gap[p] - slots.geometry[p].gap),
+                        of_motion * elastic * norm(moved)});
   }
   return largest;
 }

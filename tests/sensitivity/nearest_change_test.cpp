@@ -48,6 +48,17 @@ void expect_nearest(const std::pair<double, double>& found, double below, double
   }
 }
 
+TEST(NearestChange, OfAPressureThatIsABillionthOfTheWayIsNotZero) {
+  // F is 1e-9 more than k g0 = 10. Both are rounded to 1e-16 of themselves, 1e-7 of what presses.
+  constexpr double soft = 1e-5;  // of a penalty of a million stiffnesses, and of that rounding
+  for (const auto& method : all_methods()) {
+    const Certified run(scenes::stop(10 + 1e-8, 1000, 0.01), method);
+    EXPECT_FALSE(run.sides);
+    expect_nearest(run.nearest("F"), 1e-8, inf, soft * 1e-8);
+    expect_nearest(run.nearest("g0"), inf, 1e-11, soft * 1e-11);
+  }
+}
+
 TEST(NearestChange, OfAPressedSpringIsTheLoadThatPresses) {
   // F = 15, k g0 = 10: it opens where F falls by 5, where the stop goes away by 0.005, and where k grows by 500
   constexpr double soft = 1e-4;  // of a penalty of a million stiffnesses, and of the first order of nothing else
