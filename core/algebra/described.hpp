@@ -74,16 +74,15 @@ struct Counts {
   std::array<int, 2> example;
 };
 
-/// {SIDE: ratio}: the ratio of the largest to the smallest cell, and in `towards` the name of the side at which the
-/// smallest is. Left out, what the struct begins with.
-template <class S, std::size_t n>
+/// {SIDE: ratio, ...}: of each side, the ratio of the largest to the smallest cell, the smallest at the side. Left out,
+/// what the struct begins with.
+template <std::size_t n>
 struct Grade {
-  std::string S::*towards;
   std::array<const char*, n> sides;
   double example;
 };
-template <class S, std::size_t n>
-Grade(std::string S::*, std::array<const char*, n>, double) -> Grade<S, n>;
+template <std::size_t n>
+Grade(std::array<const char*, n>, double) -> Grade<n>;
 
 /// true or false; left out, what the struct begins with.
 struct Flag {};

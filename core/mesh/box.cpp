@@ -7,13 +7,13 @@ std::string fault(const BoxMesh& box, const std::string& element, int dimension)
   if (box.min.size() != axes || box.max.size() != axes || box.cells.size() != axes)
     return "min, max and cells of a box have one number an axis, " + std::to_string(dimension) + " in this space";
   if (const auto message = element_fault("a box", element, dimension); !message.empty()) return message;
-  std::vector<std::string> sides;
+  std::vector<std::array<const char*, 2>> directions;
   for (int axis = 0; axis < dimension; ++axis) {
     if (box.cells[axis] < 1) return "cells of a box must be at least 1";
     if (!(box.max[axis].value > box.min[axis].value)) return "max of a box must be greater than min";
-    for (const char* side : box_sides(axis, dimension)) sides.emplace_back(side);
+    directions.push_back(box_sides(axis, dimension));
   }
-  return grade_fault(box.grade_towards, box.grade.value, sides);
+  return grade_fault(box.grade, directions);
 }
 
 Mesh topology(const BoxMesh& box, const std::string& element, int dimension) {

@@ -10,8 +10,8 @@
 
 namespace stickslip {
 
-/// Sides left right bottom top; in space left right along x, front back along y, bottom top along z. `grade` > 1 makes
-/// cells grow away from the side named in `grade_towards` by that total ratio (largest cell / smallest cell).
+/// Sides left right bottom top; in space left right along x, front back along y, bottom top along z. Along each axis
+/// cells may be graded towards one of the two sides.
 struct BoxMesh {
   static constexpr const char *key = "box", *about =
                                                 "a rectangle; sides left, right, bottom, top; in space a block, with "
@@ -21,17 +21,18 @@ struct BoxMesh {
   static constexpr std::array sides{"left", "right", "bottom", "top", "front", "back"};
   std::vector<Number> min = std::vector<Number>(2), max = min;  ///< as many coordinates as axes
   std::vector<int> cells{1, 1};                                 ///< likewise
-  std::string grade_towards;                                    ///< empty: uniform
-  Number grade = 1.0;
+  std::vector<Grading> grade;
 
   double cell_count() const { return product(cells); }
   static constexpr auto keys() {
-    return std::tuple{Key{&BoxMesh::min, "min", "lower left (front) corner (length)", Place2D{{0, 0}}},
-                      Key{&BoxMesh::max, "max", "upper right (back) corner (length)", Place2D{{4, 2}}},
-                      Key{&BoxMesh::cells, "cells", "along x, along y, in space along z", Counts{{16, 8}}},
-                      Key{&BoxMesh::grade, "grade",
-                          "largest cell over smallest, smallest at the side that is named (left out: all alike)",
-                          Grade{&BoxMesh::grade_towards, sides, 8}}};
+    return std::tuple{
+        Key{&BoxMesh::min, "min", "lower left (front) corner (length)", Place2D{{0, 0}}},
+        Key{&BoxMesh::max, "max", "upper right (back) corner (length)", Place2D{{4, 2}}},
+        Key{&BoxMesh::cells, "cells", "along x, along y, in space along z", Counts{{16, 8}}},
+        Key{&BoxMesh::grade, "grade",
+            "largest cell over smallest, smallest at the side that is named; one side along each axis (left out: "
+            "all alike)",
+            Grade{sides, 8}}};
   }
 };
 
@@ -49,12 +50,11 @@ inline std::array<const char*, 2> box_sides(int axis, int dimension) {
 /// Coordinates, dimension x nodes.
 template <class T>
 Points<T> coordinates(const BoxMesh& box, const Numbers<T>& numbers, int dimension) {
-  const T ratio = numbers(box.grade);
   std::vector<std::vector<T>> fractions;
   Eigen::Index count = 1;
   for (int axis = 0; axis < dimension; ++axis) {
     const auto [low, high] = box_sides(axis, dimension);
-    fractions.push_back(grid_fractions(box.cells[axis], box.grade_towards, ratio, low, high));
+    fractions.push_back(grid_fractions(box.cells[axis], box.grade, numbers, low, high));
     count *= static_cast<Eigen::Index>(fractions.back().size());
   }
   // both ends weighted, so that each is met exactly

@@ -12,7 +12,7 @@ std::string fault(const QuadMesh& quad, const std::string& element, int dimensio
                         (next[1].value - here[1].value) * (last[0].value - here[0].value);
     if (!(turn > 0)) return "corners of a quad must run counter-clockwise, and none may be flat or turn inwards";
   }
-  return grade_fault(quad.grade_towards, quad.grade.value, {"left", "right", "bottom", "top"});
+  return grade_fault(quad.grade, {{"left", "right"}, {"bottom", "top"}});
 }
 
 Mesh topology(const QuadMesh& quad, const std::string& element, int) { return grid(quad.cells, element); }

@@ -19,15 +19,14 @@ struct QuadMesh {
   static constexpr Filling filling = Filling::continuum;
   std::array<std::array<Number, 2>, 4> corners;
   std::array<int, 2> cells{1, 1};
-  std::string grade_towards;
-  Number grade = 1.0;
+  std::vector<Grading> grade;
 
   double cell_count() const { return product(cells); }
   static constexpr auto keys() {
     return std::tuple{
         Key{&QuadMesh::corners, "corners", "counter-clockwise (length)", Corners2D{{{{0, 0}, {4, 0}, {3, 2}, {1, 2}}}}},
         Key{&QuadMesh::cells, "cells", "along bottom and top, along left and right", Counts{{16, 8}}},
-        Key{&QuadMesh::grade, "grade", "as of a box", Grade{&QuadMesh::grade_towards, grid_sides, 8}}};
+        Key{&QuadMesh::grade, "grade", "as of a box", Grade{grid_sides, 8}}};
   }
 };
 
@@ -38,9 +37,9 @@ Mesh topology(const QuadMesh&, const std::string& element, int dimension);
 /// Coordinates, 2 x nodes.
 template <class T>
 Points<T> coordinates(const QuadMesh& quad, const Numbers<T>& numbers, int) {
-  const T ratio = numbers(quad.grade), one(1.0);
-  const auto fx = grid_fractions(quad.cells[0], quad.grade_towards, ratio, "left", "right"),
-             fy = grid_fractions(quad.cells[1], quad.grade_towards, ratio, "bottom", "top");
+  const T one(1.0);
+  const auto fx = grid_fractions(quad.cells[0], quad.grade, numbers, "left", "right"),
+             fy = grid_fractions(quad.cells[1], quad.grade, numbers, "bottom", "top");
   Points<T> points(2, fx.size() * fy.size());
   int node = 0;
   for (const T& y : fy)

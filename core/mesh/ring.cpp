@@ -32,7 +32,7 @@ std::string fault(const RingMesh& ring, const std::string& element, int dimensio
   const bool closed = is_full_turn(ring.from_angle.value, ring.to_angle.value);
   if (!(span > 0) || (!closed && span > 360)) return "to_angle must exceed from_angle, by 360 degrees at most";
   if (span / ring.cells[1] >= 180) return "a cell of a ring must span less than 180 degrees";
-  return grade_fault(ring.grade_towards, ring.grade.value, {"inner", "outer"});
+  return grade_fault(ring.grade, {{"inner", "outer"}});
 }
 
 Mesh topology(const RingMesh& ring, const std::string& element, int) {

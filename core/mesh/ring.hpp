@@ -22,8 +22,7 @@ struct RingMesh {
   std::array<Number, 2> center;
   Number inner, outer, from_angle = 0.0, to_angle = 360.0;
   std::array<int, 2> cells{1, 8};  ///< [along the radius, around]
-  std::string grade_towards;
-  Number grade = 1.0;
+  std::vector<Grading> grade;
 
   double cell_count() const { return product(cells); }
   static constexpr auto keys() {
@@ -38,7 +37,7 @@ struct RingMesh {
             EndOfTurn{&RingMesh::from_angle, 90}},
         Key{&RingMesh::grade, "grade",
             "largest cell over smallest, smallest at the side that is named (left out: all alike)",
-            Grade{&RingMesh::grade_towards, std::array{"inner", "outer"}, 3}}};
+            Grade{std::array{"inner", "outer"}, 3}}};
   }
 };
 
@@ -56,7 +55,7 @@ Points<T> coordinates(const RingMesh& ring, const Numbers<T>& numbers, int) {
   const bool closed = is_full_turn(ring.from_angle.value, ring.to_angle.value);
   const T from = numbers(ring.from_angle), span = closed ? T(360.0) : numbers(ring.to_angle) - from;
   const T degree(std::acos(-1.0) / 180), inner = numbers(ring.inner), outer = numbers(ring.outer);
-  const auto along = grid_fractions(ring.cells[0], ring.grade_towards, numbers(ring.grade), "inner", "outer");
+  const auto along = grid_fractions(ring.cells[0], ring.grade, numbers, "inner", "outer");
   const int around = ring.cells[1], rows = closed ? around : around + 1;
   Points<T> points(2, static_cast<Eigen::Index>(along.size()) * rows);
   int node = 0;

@@ -6,6 +6,24 @@
 
 namespace stickslip {
 
+std::string grade_fault(const std::vector<Grading>& grade, const std::vector<std::array<const char*, 2>>& directions) {
+  std::vector<std::string> sides;
+  for (const auto& [low, high] : directions) {
+    const auto count = std::count_if(grade.begin(), grade.end(),
+                                     [&](const Grading& g) { return g.towards == low || g.towards == high; });
+    if (count > 1) return std::string("grade is towards ") + low + " or " + high + ", not both";
+    sides.insert(sides.end(), {low, high});
+  }
+  for (const auto& [towards, ratio] : grade) {
+    if (!(ratio.value > 0)) return "grade must be greater than 0";
+    if (std::find(sides.begin(), sides.end(), towards) != sides.end()) continue;
+    std::string all = sides[0];
+    for (std::size_t i = 1; i < sides.size(); ++i) all += (i + 1 == sides.size() ? " or " : ", ") + sides[i];
+    return "grade is towards " + all + ", not " + towards;
+  }
+  return "";
+}
+
 void append_block(Mesh& mesh, const std::array<int, 8>& n, const std::array<bool, 3>& mirrored) {
   if (mesh.shape == ElementShape::hex8) {
     mesh.connectivity.insert(mesh.connectivity.end(), n.begin(), n.end());

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/algebra/number.hpp"
 #include "core/algebra/scalar.hpp"
 #include "core/mesh/mesh.hpp"
 
@@ -68,17 +69,14 @@ inline std::string element_fault(const std::string& what, const std::string& ele
   return what + " has elements Q4, Q4_mean_dilatation, Q8, T3 or T6, not " + element;
 }
 
-/// What is wrong with the grading towards a side, or "".
-inline std::string grade_fault(const std::string& towards, double ratio, const std::vector<std::string>& sides) {
-  if (!(ratio > 0)) return "grade must be greater than 0";
-  if (towards.empty()) return "";
-  std::string all;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (towards == sides[i]) return "";
-    all += (i == 0 ? "" : i + 1 == sides.size() ? " or " : ", ") + sides[i];
-  }
-  return "grade_towards is " + all + ", not " + towards;
-}
+/// Ratio of the largest to the smallest of the cells along one direction, and the side that the smallest is at.
+struct Grading {
+  std::string towards;
+  Number ratio;
+};
+
+/// What is wrong with the grading of cells, or "". `directions`: of each direction the sides at its two ends.
+std::string grade_fault(const std::vector<Grading>& grade, const std::vector<std::array<const char*, 2>>& directions);
 
 /// Diagonal that splits a cell into triangles: from its first node to its third, or from its second to its fourth.
 enum class Diagonal { first, second };
@@ -141,12 +139,14 @@ Side part_of(const Side& boundary, const Holds& holds) {
   return part;
 }
 
-/// Fractions along one axis; cells grow away from the side `low` or `high` if that is the one they are graded towards.
+/// Fractions along one direction; cells grow away from the side `low` or `high` if they are graded towards it.
 template <class T>
-std::vector<T> grid_fractions(int cells, const std::string& towards, const T& ratio, const char* low,
+std::vector<T> grid_fractions(int cells, const std::vector<Grading>& grade, const Numbers<T>& numbers, const char* low,
                               const char* high) {
-  const std::vector<T> f = graded_fractions(towards == low || towards == high ? ratio : T(1.0), cells);
-  if (towards != high) return f;
+  const auto found =
+      std::find_if(grade.begin(), grade.end(), [&](const Grading& g) { return g.towards == low || g.towards == high; });
+  const std::vector<T> f = graded_fractions(found == grade.end() ? T(1.0) : numbers(found->ratio), cells);
+  if (found == grade.end() || found->towards != high) return f;
   std::vector<T> mirrored;
   for (auto it = f.rbegin(); it != f.rend(); ++it) mirrored.push_back(T(1.0) - *it);
   return mirrored;

@@ -90,8 +90,8 @@ inline constexpr bool must_be_there =
     HasExample<How> && !is_one_of<How, IfGiven, AutoOrSetting, WholeNumber, PlainNumber>;
 template <class S>
 inline constexpr bool must_be_there<EndOfTurn<S>> = false;
-template <class S, std::size_t n>
-inline constexpr bool must_be_there<Grade<S, n>> = false;
+template <std::size_t n>
+inline constexpr bool must_be_there<Grade<n>> = false;
 
 /// A key of an object that is read.
 struct KeyAt {
@@ -223,13 +223,13 @@ void read_key(const KeyAt& at, Number& to, const EndOfTurn<S>& how, S& whole) {
   at.reading.constants[child_pointer(at.object.pointer(), at.key)] =
       "where a closed ring ends, which is where it starts: from_angle is the number that turns it";
 }
-template <class S, std::size_t n>
-void read_key(const KeyAt& at, Number& to, const Grade<S, n>& how, S& whole) {
+template <std::size_t n>
+void read_key(const KeyAt& at, std::vector<Grading>& to, const Grade<n>& how) {
   const auto given = at.find();
-  const auto towards = given ? given->kind({how.sides.begin(), how.sides.end()}) : std::nullopt;
-  if (!towards) return;
-  whole.*how.towards = towards->first;
-  to = at.reading.number(towards->second, positive);
+  if (!given || !given->is_object({{}, {how.sides.begin(), how.sides.end()}})) return;
+  for (const char* side : how.sides)
+    if (const auto ratio = given->find(side)) to.push_back({side, at.reading.number(*ratio, positive)});
+  if (to.empty()) given->error("is empty; must name a side: " + listed({how.sides.begin(), how.sides.end()}));
 }
 
 inline Schema kind_of(const Number&, const InRange& how) { return schema_of(how.range); }
@@ -315,14 +315,14 @@ Schema schema_of_key(const Key<S, Member, How>& key, const S& standard) {
   return own;
 }
 template <class S, std::size_t n>
-Schema schema_of_key(const Key<S, Number, Grade<S, n>>& key, const S&) {
+Schema schema_of_key(const Key<S, std::vector<Grading>, Grade<n>>& key, const S&) {
   const Schema example = as_json(key.how.example);
   Schema sides = Schema::object();
   for (const char* side : key.how.sides)
     sides[side] = {{"description", "ratio"}, {"$ref", "#/$defs/positive"}, {"examples", Schema::array({example})}};
-  Schema own{{"description", key.about}, {"examples", Schema::array({{{key.how.sides[0], example}}})}};
-  own.update(one_of(sides));
-  return own;
+  return {{"description", key.about}, {"examples", Schema::array({{{key.how.sides[0], example}}})},
+          {"type", "object"},         {"minProperties", 1},
+          {"properties", sides},      {"additionalProperties", false}};
 }
 
 template <class S, class F>

@@ -58,14 +58,19 @@ bool fits(const JsonNode& node, const MeshDescription& description, const std::s
   return false;
 }
 
+bool is_graded(const Number& ratio) { return ratio.value != 1; }
+bool is_graded(const std::vector<Grading>& grade) {
+  return std::any_of(grade.begin(), grade.end(), [](const Grading& g) { return is_graded(g.ratio); });
+}
+
 /// The mesh with cells that are all alike; none where it has no grade, or one that makes no difference.
 std::optional<MeshDescription> without_grade(const MeshDescription& description) {
   return std::visit(
       []<class M>(const M& mesh) -> std::optional<MeshDescription> {
         if constexpr (requires { mesh.grade; }) {
           M even = mesh;
-          even.grade = 1.0;
-          if (mesh.grade.value != 1) return even;
+          even.grade = M{}.grade;
+          if (is_graded(mesh.grade)) return even;
         }
         return std::nullopt;
       },

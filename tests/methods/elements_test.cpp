@@ -169,8 +169,7 @@ TEST_P(Uniform, StressIsExactWhateverTheElementAndTheLoadsSharesAreConsistent) {
   box.min = {0.0, 0.0};
   box.max = {2.0, 1.0};
   box.cells = {4, 3};
-  box.grade_towards = "right";
-  box.grade = 3.0;
+  box.grade = {{"right", 3.0}};
   s.bodies = {{"block", box, LinearElastic{1000.0, nu}, element, 1.0, thickness}};
   s.supports = {held("block.bottom", 'y'), held("block.left", 'x')};
   s.loads = {scenes::traction("block.top", {0.0, top}), scenes::traction("block.right", {side, 0.0})};

@@ -180,8 +180,7 @@ Scene twisted_block(const Material& material, bool finite, const std::string& el
   box.min = {0.0, 0.0, 0.0};
   box.max = {1.2, depth, 0.8};
   box.cells = {3, 2, 2};
-  box.grade_towards = "bottom";
-  box.grade = grade;
+  box.grade = {{"bottom", grade}};
   s.bodies = {{"block", box, material, element, 1.0}};
   s.obstacles = {{"floor", Plane{{0.0, 0.0, -0.04}, {tilt, -0.02, 1.0}}, {}}};
   s.contacts = {scenes::contact("sole", "block.bottom", "floor")};
@@ -307,7 +306,7 @@ Scene turned(Scene s) {
     turn(box.min);
     turn(box.max);
     turn(box.cells);
-    box.grade_towards = turned_side(box.grade_towards);
+    for (Grading& grading : box.grade) grading.towards = turned_side(grading.towards);
   }
   for (auto& obstacle : s.obstacles) {
     auto& plane = std::get<Plane>(obstacle.shape);

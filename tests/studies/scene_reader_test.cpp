@@ -464,8 +464,8 @@ TEST(SceneReader, ReadsRingsDisksQuadsThicknessAndElements) {
   EXPECT_EQ(ring.inner.value, 3);
   EXPECT_EQ(ring.outer.value, 4);
   EXPECT_EQ(ring.cells, (std::array{2, 9}));
-  EXPECT_EQ(ring.grade_towards, "outer");
-  EXPECT_EQ(ring.grade.value, 5);
+  EXPECT_EQ(ring.grade.at(0).towards, "outer");
+  EXPECT_EQ(ring.grade.at(0).ratio.value, 5);
   EXPECT_EQ(ring.to_angle.value, 360);
   EXPECT_EQ(bodies[2].element, "Q8");
   EXPECT_EQ(bodies[2].thickness.value, 0.5);
@@ -477,7 +477,7 @@ TEST(SceneReader, ReadsRingsDisksQuadsThicknessAndElements) {
   EXPECT_EQ(bodies[0].thickness.value, 1);
   const auto& quad = std::get<QuadMesh>(bodies[1].mesh);
   EXPECT_EQ(quad.corners[2][1].value, 4);
-  EXPECT_EQ(quad.grade_towards, "top");
+  EXPECT_EQ(quad.grade.at(0).towards, "top");
   std::vector<double> values;
   for (const auto& parameter : input.scene.parameters) values.push_back(parameter.value);
   EXPECT_THAT(values, ElementsAre(0.5, 70, 1, 4, 0));

@@ -359,8 +359,7 @@ Scene fitted_rings(const std::string& element) {
   inner.to_angle = outer.to_angle = end;
   inner.cells = {2, 7};
   outer.cells = {3, 9};
-  outer.grade_towards = "inner";
-  outer.grade = grade;
+  outer.grade = {{"inner", grade}};
   s.bodies = {{"inner", inner, LinearElastic{1000.0, nu}, element, 1.0},
               {"outer", outer, LinearElastic{1500.0, 0.3}, element, 1.0}};
   s.contacts = {contact("fit", "outer.inner", "inner.outer")};

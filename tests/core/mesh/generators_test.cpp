@@ -109,8 +109,7 @@ TEST(Box, HasItsAreaItsBoundaryAndItsCornersForBothElements) {
 TEST(Box, GrowsGeometricallyAwayFromTheNamedSideByTheGivenRatio) {
   for (const char* towards : {"left", "right", "bottom", "top"}) {
     BoxMesh mesh = box();
-    mesh.grade_towards = towards;
-    mesh.grade = 8.0;
+    mesh.grade = {{towards, 8.0}};
     mesh.cells = {4, 4};
     const Points<double> points = points_of(mesh);
     const bool along_x = std::string(towards) == "left" || std::string(towards) == "right";
@@ -292,10 +291,11 @@ TEST(Coordinates, OfABoxHaveExactDerivatives) {
   mesh.cells = {3, 4};
   for (const char* towards : {"right", "bottom"})
     for (double grade : {1.0, 5.0}) {  // 1: where a formula with (ratio - 1) below the line would fail
-      mesh.grade = Number(grade, 4);
-      mesh.grade_towards = towards;
+      mesh.grade = {{towards, Number(grade, 4)}};
       expect_exact_derivatives<5>(mesh, {1, 2, 3, 5, grade});
     }
+  mesh.grade = {{"top", Number(3, 5)}, {"left", Number(4, 4)}};
+  expect_exact_derivatives<6>(mesh, {1, 2, 3, 5, 4, 3});
 }
 
 TEST(Coordinates, OfAHalfDiskHaveExactDerivatives) {
@@ -359,8 +359,7 @@ TEST(Quad, IsABoxWhereItsCornersAre) {
   same.corners = {{{1.0, -0.5}, {4.3, -0.5}, {4.3, 1.7}, {1.0, 1.7}}};
   for (const char* towards : {"", "left", "top"}) {
     BoxMesh reference = box();
-    reference.grade_towards = same.grade_towards = towards;
-    reference.grade = same.grade = 3.0;
+    if (*towards) reference.grade = same.grade = {{towards, 3.0}};
     // the two weigh the corners by products of different order
     EXPECT_LE(largest_entry(points_of(same) - points_of(reference)), 8 * eps * 4.3);
   }
@@ -540,8 +539,7 @@ TEST(Coordinates, OfQuadsRingsAndDisksHaveExactDerivatives) {
       x.slot = static_cast<int>(numbers.size());
       numbers.push_back(x.value);
     }
-  q.grade_towards = "top";
-  q.grade = Number(2.5, 8);
+  q.grade = {{"top", Number(2.5, 8)}};
   numbers.push_back(2.5);
   expect_exact_derivatives<9>(q, numbers);
   for (const char* towards : {"inner", "outer"}) {
@@ -551,13 +549,12 @@ TEST(Coordinates, OfQuadsRingsAndDisksHaveExactDerivatives) {
     open.outer = Number(2.5, 3);
     open.from_angle = Number(20, 4);
     open.to_angle = Number(130, 5);
-    open.grade_towards = towards;
-    open.grade = Number(3, 6);
+    open.grade = {{towards, Number(3, 6)}};
     expect_exact_derivatives<7>(open, {0.3, -0.7, 1, 2.5, 20, 130, 3});
     RingMesh closed = open;
     closed.from_angle = Number(20, 4);
     closed.to_angle = 380.0;
-    closed.grade.slot = 5;
+    closed.grade[0].ratio.slot = 5;
     expect_exact_derivatives<6>(closed, {0.3, -0.7, 1, 2.5, 20, 3});
   }
   DiskMesh d = disk(3, 2);
@@ -582,8 +579,10 @@ TEST(Descriptions, ThatMakeNoMeshAreRefusedWithAReason) {
   bad.cells = {0, 1};
   expect_fault(bad, "Q4", 2, "at least 1");
   bad = box();
-  bad.grade_towards = "north";
+  bad.grade = {{"north", 2.0}};
   expect_fault(bad, "Q4", 2, "not north");
+  bad.grade = {{"left", 2.0}, {"top", 2.0}, {"right", 2.0}};
+  expect_fault(bad, "Q4", 2, "left or right, not both");
   expect_fault(half_disk(4, 9, 1), "Q4", 2, "factor 2");
   expect_fault(half_disk(4, 4, 0), "Q4", 2, "grade");
   expect_fault(ring(2, 8, 0, 400), "Q4", 2, "360 degrees at most");
@@ -594,7 +593,7 @@ TEST(Descriptions, ThatMakeNoMeshAreRefusedWithAReason) {
   thin.outer = 1.0;
   expect_fault(thin, "Q4", 2, "greater than inner");
   thin = ring(2, 8);
-  thin.grade_towards = "left";
+  thin.grade = {{"left", 2.0}};
   expect_fault(thin, "Q4", 2, "inner or outer, not left");
   expect_fault(disk(0, 1), "Q4", 2, "at least 1");
   expect_fault(disk(2, 2, -1), "Q4", 2, "grade");

@@ -95,7 +95,7 @@ TEST(MeshFaults, AFineMeshHasNoNodesAtOnePlace) {
 }
 
 TEST(MeshFaults, AnElementWithoutDigitsForItsStrainIsFound) {
-  BoxMesh box{{0.0, 0.0}, {2.0, 1.0}, {4, 4}, "bottom", 1e12};
+  BoxMesh box{{0.0, 0.0}, {2.0, 1.0}, {4, 4}, {{"bottom", 1e12}}};
   const auto thin_of = [](const BoxMesh& of) {
     const Mesh mesh = make_mesh(of, "", 2);
     return first_thin_element(mesh, make_points<double>(of, mesh, Numbers<double>{}));
@@ -104,7 +104,7 @@ TEST(MeshFaults, AnElementWithoutDigitsForItsStrainIsFound) {
   ASSERT_TRUE(thin);
   EXPECT_EQ(thin->element, 0);
   EXPECT_NEAR(thin->thickness, 1e-12, 1e-15);  // by the sum of all steps
-  box.grade = 1e9;
+  box.grade[0].ratio = 1e9;
   EXPECT_FALSE(thin_of(box));
   // a body far away has the digits of its coordinates
   BoxMesh far{{1e9, 0.0}, {1e9 + 1e-3, 1e-3}, {1, 1}};

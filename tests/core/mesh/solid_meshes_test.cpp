@@ -60,8 +60,7 @@ TEST(SolidMeshes, BoxesFillTheirVolumeAndFaceOutward) {
   box.min = {1.0, -1.0, 2.0};
   box.max = {3.0, 2.0, 6.0};
   box.cells = {3, 2, 4};
-  box.grade_towards = "bottom";
-  box.grade = 3.0;
+  box.grade = {{"bottom", 3.0}};
   for (const char* element : {"", "H8", "H8_mean_dilatation", "T4"}) {
     const Made made = make(box, element);
     EXPECT_EQ(made.mesh.node_count, 4 * 3 * 5);

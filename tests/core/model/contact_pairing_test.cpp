@@ -147,8 +147,7 @@ TEST(TributaryAreas, AreHalfOfEachFacetAndAddUpToTheSide) {
   EXPECT_THAT(areas(on_floor("upper.bottom")), ElementsAre(0.5, 1, 1, 1, 0.5));
   auto graded = on_floor("upper.bottom");
   auto& mesh = std::get<BoxMesh>(graded.bodies[0].mesh);
-  mesh.grade_towards = "left";
-  mesh.grade = 5.0;
+  mesh.grade = {{"left", 5.0}};
   double total = 0;
   for (double area : areas(graded)) total += area;
   EXPECT_NEAR(total, 4, 1e-15 * 16);  // ten roundings of numbers up to 4
