@@ -69,9 +69,13 @@ Nodal<T, Shape> averaged_forces(const Law& law, const Nodal<G, Shape>& coordinat
     if constexpr (requires { Law::memory; }) {
       [[maybe_unused]] const int branch = memory.branch();
       Vec<T, memory_at<Law, kinematics>()> remembered = memory.template take<memory_at<Law, kinematics>()>();
-      if constexpr (flows) remembered = law.flow(element.strain(q), remembered, branch);
+      if constexpr (flows) {
+        const auto before = remembered;
+        P[q] = law.stress_with_flow(element.strain(q), before, branch, after ? &remembered : nullptr);
+      } else {
+        P[q] = law.stress(element.strain(q), remembered);
+      }
       if (after) after = std::copy(remembered.begin(), remembered.end(), after);
-      P[q] = law.stress(element.strain(q), remembered);
     } else {
       P[q] = law.stress(element.strain(q));
     }
@@ -122,24 +126,47 @@ Tensor<Probe, layout> seeded(const Tensor<T, layout>& H) {
   return probe;
 }
 
-/// dsigma/dH times a volume, component by component; of a law that remembers, with the flow from `before`.
-template <class T, TensorLayout layout, class Law, int size = Tensor<T, layout>::size>
-Mat<T, size> material_tangent(const Law& law, const Tensor<T, layout>& H, const T& volume, ElementMemory<T>& before) {
-  using Probe = Dual<size, T>;
+/// sigma with its derivatives by H, component by component; of a law that remembers, with the flow from `before`.
+template <class T, TensorLayout layout, class Law, class Probe = Dual<Tensor<T, layout>::size, T>>
+Tensor<Probe, layout> seeded_stress(const Law& law, const Tensor<T, layout>& H, ElementMemory<T>& before) {
   const Tensor<Probe, layout> probe = seeded<Probe>(H);
-  Tensor<Probe, layout> sigma;
   if constexpr (requires { Law::memory; }) {
     constexpr int remembered = Law::memory_in(layout);
     const int branch = before.branch();
     const auto memory = before.template take<remembered>();
     const Vec<Probe, remembered> constant = memory.unaryExpr([](const T& x) { return Probe(x); });
-    sigma = law.stress(probe, law.flow(probe, constant, branch));
+    return law.template stress_with_flow<Probe, layout>(probe, constant, branch);
   } else {
-    sigma = law.stress(probe);
+    return law.stress(probe);
   }
+}
+
+/// dsigma/dH times a volume.
+template <class T, TensorLayout layout, class Law, int size = Tensor<T, layout>::size>
+Mat<T, size> material_tangent(const Law& law, const Tensor<T, layout>& H, const T& volume, ElementMemory<T>& before) {
+  const auto sigma = seeded_stress(law, H, before);
   Mat<T, size> tangent;
   for (int k = 0; k < size; ++k) tangent.row(k) = sigma[k].d * volume;
   return tangent;
+}
+
+/// Nodal forces of an element with mean dilatation at finite strain, with the derivatives that u has. The law is
+/// evaluated with those by its strain alone.
+template <class T, class Probe, class Shape, Kinematics kinematics, class Law>
+Nodal<Probe, Shape> averaged_forces_by_chain(const Law& law, const Nodal<T, Shape>& coordinates,
+                                             const Nodal<Probe, Shape>& u, const T& depth, ElementMemory<T>& before) {
+  using Element = MeanDilatation<Probe, T, Shape, kinematics>;
+  const Element element(coordinates, depth, u);
+  std::array<typename Element::Strain, Element::points> P;
+  for (std::size_t q = 0; q < Element::points; ++q) {
+    const auto& strain = element.strain(q);
+    const auto sigma = seeded_stress(law, strain.map([](const Probe& x) { return x.v; }), before);
+    for (int k = 0; k < strain.size; ++k) {
+      P[q][k] = Probe(sigma[k].v);
+      for (int m = 0; m < strain.size; ++m) P[q][k].d += sigma[k].d[m] * strain[m].d;
+    }
+  }
+  return element.forces(P);
 }
 
 /// Tangent of an element with mean dilatation at finite strain.
@@ -151,7 +178,9 @@ Mat<T, dofs_of<Shape>> averaged_tangent(const Law& law, const Nodal<T, Shape>& c
   Nodal<Probe, Shape> seeded;
   for (int k = 0; k < dofs; ++k) seeded.data()[k] = Probe::seed(u.data()[k], k);
   Nodal<Probe, Shape> forces;
-  if constexpr (requires { Law::memory; }) {
+  if constexpr (is_in_space(kinematics)) {
+    forces = averaged_forces_by_chain<T, Probe, Shape, kinematics>(law, coordinates, seeded, depth, before);
+  } else if constexpr (requires { Law::memory; }) {
     constexpr int count = points_of<Shape>(kinematics) * memory_at<Law, kinematics>();
     const int* const branches = before.branches();
     const Vec<T, count> numbers = before.template take<count>();

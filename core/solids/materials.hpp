@@ -75,6 +75,7 @@ concept TwoNodeLawWith = requires(const L& law, const Mat<double, 2>& X, const V
 template <class L>
 concept Flows = requires(const L& law, const PlaneGradient<double>& H, const Vec<double, memory_of<L>()>& memory) {
   { law.flow(H, memory) } -> std::same_as<Vec<double, memory_of<L>()>>;
+  { law.stress_with_flow(H, memory, 0) } -> std::same_as<PlaneGradient<double>>;
   { law.trial(H, memory) } -> std::same_as<FlowTrial<double>>;
   { law.hardening.piece_count() } -> std::same_as<int>;
   { L::plastic_strain(memory) } -> std::convertible_to<double>;
