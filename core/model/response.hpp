@@ -81,11 +81,18 @@ Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 3, 1> place_of(const Model& model, const 
   return x;
 }
 
-/// Component x y z of a force, or its moment about a point of the plane, counter-clockwise, with the arm to a place.
+/// Component x y z of a force at a place x, or its moment: in the plane about a point, counter-clockwise; in space
+/// about an axis through the point, right-handed.
 template <class T, class Force, class Place>
 T component_of(const Response& response, const Force& force, const Place& x, const Numbers<T>& numbers) {
   if (response.component != Response::Component::moment) return force[response.axis()];
-  return (x[0] - numbers(response.about[0])) * force[1] - (x[1] - numbers(response.about[1])) * force[0];
+  const auto about = [&](int i, int j) -> T {
+    return (x[i] - numbers(response.about[i])) * force[j] - (x[j] - numbers(response.about[j])) * force[i];
+  };
+  if (response.moment_axis.empty()) return about(0, 1);
+  Vec<T, 3> axis;
+  for (int i = 0; i < 3; ++i) axis[i] = numbers(response.moment_axis[i]);
+  return dot(axis, Vec<T, 3>(about(1, 2), about(2, 0), about(0, 1))) / norm(axis);
 }
 
 /// Accumulated tangential slip of a point along the component of a response.

@@ -119,8 +119,9 @@ struct Response {
   std::string on;  ///< side expression, or name of a contact or body, as the kind asks
   Component component = Component::own;
   Take take = Take::mean;
-  std::vector<Number> about = {};  ///< of a moment, or of a half width
-  std::vector<Number> at;          ///< point of the initial configuration instead of `on`
+  std::vector<Number> about = {};        ///< of a moment, or of a half width
+  std::vector<Number> moment_axis = {};  ///< direction, of any length; in space, of a moment
+  std::vector<Number> at;                ///< point of the initial configuration instead of `on`
 
   /// 0, 1, 2 of x, y, z. pre: the component is one of them.
   int axis() const { return static_cast<int>(component) - static_cast<int>(Component::x); }

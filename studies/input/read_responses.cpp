@@ -72,14 +72,24 @@ void read_component(const JsonNode& node, const JsonNode& component, const Respo
                     SceneReading& reading) {
   auto allowed = reading.axes();
   if (kind.component == ResponseKind::Component::axis_or_normal) allowed.insert(allowed.begin(), "normal");
-  const bool moment = has_moment(kind, reading.dimension());
+  const bool moment = has_moment(kind);
   if (moment) allowed.emplace_back("moment");
   response.component = component_of(component.choice(allowed).value_or(allowed.front()));
-  const auto about = moment ? node.find("about") : std::nullopt;
-  if (about) response.about = read_place(*about, reading);
-  const bool is_moment = response.component == Response::Component::moment;
-  if (about && !is_moment) about->error_at_key(R"("about" belongs to the component "moment")");
-  if (!about && is_moment) node.error(R"(the key "about" is missing: the point [x, y] that the moment is about)");
+  if (!moment) return;
+  const bool in_space = reading.dimension() == 3, is_moment = response.component == Response::Component::moment;
+  const auto read = [&](const char* key, std::vector<Number>& into, const char* what) {
+    const auto found = node.find(key);
+    if (found) into = read_place(*found, reading);
+    if (found && !is_moment) found->error_at_key(in_quotes(key) + R"( belongs to the component "moment")");
+    if (!found && is_moment) node.error("the key " + in_quotes(key) + " is missing: " + what);
+  };
+  read("about", response.about,
+       in_space ? "a point [x, y, z] of the axis of the moment" : "the point [x, y] that the moment is about");
+  if (!in_space) return;
+  read("axis", response.moment_axis, "the direction [x, y, z] of the axis of the moment");
+  const auto& axis = response.moment_axis;
+  if (!axis.empty() && std::all_of(axis.begin(), axis.end(), [](const Number& n) { return n.value == 0; }))
+    node.find("axis")->must_be("a vector that is not zero");
 }
 
 void read_response(const std::string& name, const JsonNode& outer, SceneReading& reading) {

@@ -17,7 +17,7 @@ constexpr std::array kinds{
                  .component = Component::axis,
                  .about = "force of the support on the body, summed over the side",
                  .example = R"({"on": "block.left", "component": "x"})",
-                 .own_descriptions = {{{"component", "an axis, or the moment about a point"}}}},
+                 .own_descriptions = {{{"component", "an axis, or the moment about a point, in space about an axis"}}}},
     ResponseKind{
         .name = "contact_force",
         .kind = Response::Kind::contact_force,
@@ -25,7 +25,9 @@ constexpr std::array kinds{
         .component = Component::axis_or_normal,
         .about = "force on the slave",
         .example = R"({"contact": "sole", "component": "normal"})",
-        .own_descriptions = {{{"component", "an axis; normal: positive in compression; moment: about a point"}}}},
+        .own_descriptions = {{{"component",
+                               "an axis; normal: positive in compression; moment: about a point, in space about an "
+                               "axis"}}}},
     ResponseKind{.name = "displacement",
                  .kind = Response::Kind::displacement,
                  .component = Component::axis,
@@ -85,19 +87,22 @@ constexpr const char* key_schemas = R"json({
     "default": "mean"},
   "at": {"description": "in place of take: a point of the initial configuration (length)",
     "$ref": "#/$defs/vector", "examples": [[4, 0]]},
-  "about": {"description": "of the component moment, in a plane space: the point that it is about (length)",
-    "$ref": "#/$defs/pair", "examples": [[0, 0]]}
+  "about": {"description": "of the component moment: the point that it is about, in space a point of the axis (length)",
+    "$ref": "#/$defs/vector", "examples": [[0, 0]]},
+  "axis": {"description": "of the component moment, in space: direction of the axis, right-handed",
+    "$ref": "#/$defs/vector", "examples": [[0, 0, 1]]}
 })json";
 
 /// Schema of one kind of response, with the keys that it has in the plane.
 Schema kind_schema(const ResponseKind& kind, const Schema& schemas) {
-  const Keys keys = keys_of(kind, 2);
+  Keys keys = keys_of(kind, 2);
+  const bool moment = has_moment(kind);
+  if (moment) keys.optional.emplace_back("axis");
   Schema properties = Schema::object();
   for (const auto* list : {&keys.required, &keys.optional})
     for (const auto& key : *list) properties[key] = schemas.at(key);
   for (const auto& [key, text] : kind.own_descriptions)
     if (key) properties[key]["description"] = text;
-  const bool moment = has_moment(kind, 2);
   if (properties.contains("component")) {
     const bool normal = kind.component == ResponseKind::Component::axis_or_normal;
     Schema components = {"x", "y", "z"};
@@ -114,7 +119,7 @@ Schema kind_schema(const ResponseKind& kind, const Schema& schemas) {
   if (moment) {  // the two go together
     schema["if"] = {{"properties", {{"component", {{"const", "moment"}}}}}};
     schema["then"] = {{"required", {"about"}}};
-    schema["else"] = {{"properties", {{"about", false}}}};
+    schema["else"] = {{"properties", {{"about", false}, {"axis", false}}}};
   }
   return schema;
 }
@@ -125,8 +130,8 @@ std::span<const ResponseKind> response_kinds() { return kinds; }
 
 std::string_view name_of(Response::Kind kind) { return response_kinds()[static_cast<std::size_t>(kind)].name; }
 
-bool has_moment(const ResponseKind& kind, int dimension) {
-  return dimension == 2 && (kind.kind == Response::Kind::reaction || kind.kind == Response::Kind::contact_force);
+bool has_moment(const ResponseKind& kind) {
+  return kind.kind == Response::Kind::reaction || kind.kind == Response::Kind::contact_force;
 }
 
 Keys keys_of(const ResponseKind& kind, int dimension) {
@@ -143,8 +148,8 @@ Keys keys_of(const ResponseKind& kind, int dimension) {
     keys.required.emplace_back("on");
   else if (kind.sampled)
     keys.optional.emplace_back("at");
-  if (has_moment(kind, dimension) || kind.kind == Response::Kind::contact_half_width)
-    keys.optional.emplace_back("about");
+  if (has_moment(kind) || kind.kind == Response::Kind::contact_half_width) keys.optional.emplace_back("about");
+  if (has_moment(kind) && dimension == 3) keys.optional.emplace_back("axis");
   return keys;
 }
 

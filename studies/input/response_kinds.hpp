@@ -32,8 +32,8 @@ std::span<const ResponseKind> response_kinds();
 /// The key of a kind of response in a scene file: "reaction", "contact_force", ...
 std::string_view name_of(Response::Kind kind);
 
-/// Whether it may be a moment about a point.
-bool has_moment(const ResponseKind& kind, int dimension);
+/// Whether it may be a moment.
+bool has_moment(const ResponseKind& kind);
 Keys keys_of(const ResponseKind& kind, int dimension);
 
 /// JSON Schema of {"KIND": {...}}.

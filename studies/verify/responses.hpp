@@ -34,7 +34,9 @@ inline std::optional<double> taken(const Samples& samples, const std::string& ta
 /// A vector along an axis; a force at a place also about a point.
 inline double part_of(const Json& how, const Vec3& v, const Vec3& at = Vec3::Zero()) {
   const std::string component = how.at("component");
-  return component == "moment" ? (at - vec3(how.at("about"))).cross(v)[2] : v[component[0] - 'x'];
+  if (component != "moment") return v[component[0] - 'x'];
+  const Vec3 axis = how.contains("axis") ? vec3(how["axis"]).normalized() : Vec3(0, 0, 1);
+  return axis.dot((at - vec3(how.at("about"))).cross(v));
 }
 
 /// Displacement at a place of the start, in the element that holds it.
