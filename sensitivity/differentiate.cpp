@@ -50,7 +50,7 @@ long state_bytes(const std::vector<std::vector<State<Direction>>>& increments) {
 
 }  // namespace
 
-struct Derivatives::Progress {
+struct Derivatives::SoFar {
   const Model& model;
   const Slots<double>& slots;
   const Method& method;
@@ -182,12 +182,12 @@ struct Derivatives::Progress {
 
 Derivatives::Derivatives(const Model& model, const Slots<double>& slots, const Method& method,
                          Workspace<double>& workspace)
-    : progress_(model.scene.parameters.empty() ? nullptr : new Progress{model, slots, method, workspace}) {}
+    : so_far_(model.scene.parameters.empty() ? nullptr : new SoFar{model, slots, method, workspace}) {}
 Derivatives::~Derivatives() = default;
 
 void Derivatives::follow(const Trajectory<double>& trajectory) {
-  if (!progress_ || progress_->postponed) return;  // without parameters there is nothing to differentiate
-  Progress& now = *progress_;
+  if (!so_far_ || so_far_->postponed) return;  // without parameters there is nothing to differentiate
+  SoFar& now = *so_far_;
   const Stopwatch time(now.gradients.seconds);
   const bool worthwhile = scheme_of(now.method).keeps_tangents && now.workspace.engine->has_costly_factors();
   const auto& increments = trajectory.increments;
@@ -201,8 +201,8 @@ void Derivatives::follow(const Trajectory<double>& trajectory) {
 }
 
 Gradients Derivatives::finish(const Trajectory<double>& trajectory) {
-  if (!progress_) return {};
-  Progress& now = *progress_;
+  if (!so_far_) return {};
+  SoFar& now = *so_far_;
   {
     const Stopwatch time(now.gradients.seconds);
     Counters search;

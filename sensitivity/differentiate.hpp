@@ -68,8 +68,8 @@ class Derivatives {
   Gradients finish(const Trajectory<double>& trajectory);
 
  private:
-  struct Progress;
-  std::unique_ptr<Progress> progress_;
+  struct SoFar;
+  std::unique_ptr<SoFar> so_far_;
 };
 
 /// The derivatives of a run that has ended. `workspace`: that of the run; its engine ends with another factor.

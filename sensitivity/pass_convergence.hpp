@@ -7,7 +7,7 @@
 namespace stickslip::detail {
 
 /// Observes the change per pass of a linear iteration.
-class Progress {
+class PassConvergence {
  public:
   static constexpr int limit = 20000;
   /// Whether, at the rate of the last `window` passes, `change` will not fall to `enough` in the remaining passes. A

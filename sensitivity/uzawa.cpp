@@ -26,7 +26,7 @@
 
 #include "methods/augmentation/acceleration.hpp"
 #include "sensitivity/direct.hpp"
-#include "sensitivity/progress.hpp"
+#include "sensitivity/pass_convergence.hpp"
 #include "sensitivity/pull_back.hpp"
 #include "sensitivity/schemes.hpp"
 #include "sensitivity/ties/scales.hpp"
@@ -166,8 +166,8 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
   Matrix<double> at_least;                        // D lambda after it
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
   auto& record = problem.record.emplace();
-  detail::Progress progress;
-  for (int pass = 1; pass <= detail::Progress::limit; ++pass) {
+  detail::PassConvergence convergence;
+  for (int pass = 1; pass <= detail::PassConvergence::limit; ++pass) {
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
     if (!linearised.solve(lambda)) return false;
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return linearised.fields()[b].traction; });
@@ -203,7 +203,7 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
       last[j] = change;
     }
     if (converged) return true;
-    if (progress.is_hopeless(pass, slowest, 1)) break;
+    if (convergence.is_hopeless(pass, slowest, 1)) break;
   }
   problem.status = Status::cap;
   problem.message = "the derivatives would not settle in 20000 passes; try a larger scale";
@@ -252,8 +252,8 @@ bool iterate_back(AdjointProblem& problem, RecordedEquilibrium& recorded, int ob
   Accelerator<double> accelerator(UzawaAL::Acceleration::anderson);
   Vector<double> x = asked;
   bool plain = true;
-  detail::Progress progress;
-  for (int pass = 1; pass <= detail::Progress::limit; ++pass) {
+  detail::PassConvergence convergence;
+  for (int pass = 1; pass <= detail::PassConvergence::limit; ++pass) {
     recorded.seed_traction(objective, x);
     recorded.balance(objective);
     const Vector<double> image = asked + recorded.take_multiplier(objective);
@@ -267,7 +267,7 @@ bool iterate_back(AdjointProblem& problem, RecordedEquilibrium& recorded, int ob
     const bool converged = change <= (pass > 2 ? negligible : 4 * unit_roundoff * largest);
     const bool stalled = q >= 1 && pass > 2 && change <= noise * scale;
     if (left.cwiseAbs().maxCoeff() <= negligible || (plain && (converged || stalled))) return true;
-    if (progress.is_hopeless(pass, left.cwiseAbs().maxCoeff(), negligible)) break;
+    if (convergence.is_hopeless(pass, left.cwiseAbs().maxCoeff(), negligible)) break;
     last = change;
     recorded.restore(objective, start);
     x = accelerator.next(x, image, true, q, [](Vector<double> v) { return v; });

@@ -48,7 +48,8 @@ class CondensedTangent : public TangentSystem<T> {
     return condensed_ && model_.memory_count == 0 && model_.followers.empty() ? bodies_.linearised_at() : nullptr;
   }
 
-  bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold, Counters& counters) override;
+  bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& anchor,
+                 Counters& counters) override;
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how) override;
   bool reversed() const override {  // (K_ii is positive definite)
     return dense_.reversed() != (untouched_.determinant_sign() < 0);
@@ -78,7 +79,7 @@ class CondensedTangent : public TangentSystem<T> {
  private:
   bool condense(Counters& counters);
   /// Per contact dof: whether a point of these tangents touches it, or what holds the nodes.
-  std::vector<char> touched_by(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold) const;
+  std::vector<char> touched_by(const std::vector<PointTangent<T>>& tangents, const Vector<double>& anchor) const;
   void eliminate_all_but(const std::vector<char>& touched);
 
   const Model& model_;
@@ -121,9 +122,9 @@ CondensedTangent<T>::CondensedTangent(const Model& model, const Slots<T>& slots,
 
 template <class T>
 std::vector<char> CondensedTangent<T>::touched_by(const std::vector<PointTangent<T>>& tangents,
-                                                  const Vector<double>& hold) const {
+                                                  const Vector<double>& anchor) const {
   const int D = model_.dimension;
-  std::vector<char> touched(schur_.rows(), hold.size() > 0);
+  std::vector<char> touched(schur_.rows(), anchor.size() > 0);
   for (std::size_t p = 0; p < tangents.size(); ++p)
     for (int place : tangents[p].places.empty() ? model_.points[p].places : tangents[p].places)
       std::fill_n(touched.begin() + place * D, D, 1);
@@ -152,17 +153,17 @@ void CondensedTangent<T>::eliminate_all_but(const std::vector<char>& touched) {
 }
 
 template <class T>
-bool CondensedTangent<T>::factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold,
+bool CondensedTangent<T>::factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& anchor,
                                     Counters& counters) {
   ++counters.assemblies;
-  auto touched = touched_by(tangents, hold);
+  auto touched = touched_by(tangents, anchor);
   if (!eliminated_ || !untouched_.has(touched)) {
     if (eliminated_)  // points go on: what they touched they may touch again
       for (int row : untouched_.touched()) touched[row] = 1;
     eliminate_all_but(touched);
   }
   Counters of_dense;  // (the bodies' factor is the one that counts)
-  return dense_.factorise(tangents, hold, of_dense);
+  return dense_.factorise(tangents, anchor, of_dense);
 }
 
 template <class T>

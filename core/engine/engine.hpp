@@ -95,13 +95,13 @@ class Engine {
   bool condenses_tangents() const { return system().condenses_tangents(); }
   /// Whether a factorisation costs as much as many solves.
   bool has_costly_factors() const { return system().has_costly_factors(); }
-  /// `hold`: stiffness against motion of each contact node, the same in all directions, force per length; empty: none.
-  /// False where the tangent is singular: message() says why.
-  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {});
+  /// `anchor`: stiffness against motion of each contact node, the same in all directions, force per length; empty:
+  /// none. False where the tangent is singular: message() says why.
+  bool factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& anchor = {});
   /// In place of factorise(), where few points changed since (engine/tangent_update.hpp). Until the next factorise()
   /// all solves are with these tangents. False, and nothing changed, where an update does not pay or cannot be made.
-  bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& hold = {}) {
-    return system().update(tangents, hold, counters);
+  bool update(const std::vector<PointTangent<T>>& tangents, Counters& counters, const Vector<double>& anchor = {}) {
+    return system().update(tangents, anchor, counters);
   }
   /// Whether the determinant of the tangent has another sign than where all points stick. A problem with such a tangent
   /// has several solutions, or none, under some load.

@@ -61,9 +61,9 @@ bool Engine<T>::has_tangent_near(const BodyMotion<T>& at) const {
 
 template <class T>
 bool Engine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters& counters,
-                          const Vector<double>& hold) {
+                          const Vector<double>& anchor) {
   if (!system().accepts_bodies(counters)) let_solve(1);
-  return system().factorise(tangents, hold, counters);
+  return system().factorise(tangents, anchor, counters);
 }
 
 template <class T>

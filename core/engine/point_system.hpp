@@ -70,17 +70,17 @@ void for_each_framed_entry(const Model& model, const Slots<T>& slots, int p, con
 template <class T>
 class PointSystem : public TangentSystem<T> {
  public:
-  bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold,
+  bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& anchor,
                  Counters& counters) override {
     made_.update.clear();
-    if (model_.effects.linear_bulk && is_made_from(tangents, hold)) return true;
+    if (model_.effects.linear_bulk && is_made_from(tangents, anchor)) return true;
     ++counters.assemblies;
     made_.valid = false;
     made_.tangents = tangents;
-    made_.hold = hold;
+    made_.anchor = anchor;
     return made_.valid = make_factor(counters);
   }
-  bool update(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold, Counters& counters) override;
+  bool update(const std::vector<PointTangent<T>>& tangents, const Vector<double>& anchor, Counters& counters) override;
   BlockVector<T> solve(const BlockVector<T>& rows, Solving how) override;
   int solves() const override { return made_.update.empty() ? 1 : 2; }
   bool reversed() const override {
@@ -122,9 +122,9 @@ class PointSystem : public TangentSystem<T> {
   /// add(row, value) of what holds the nodes.
   template <class Add>
   void for_each_hold(Add&& add) const {
-    for (Eigen::Index n = 0; n < made_.hold.size(); ++n)
+    for (Eigen::Index n = 0; n < made_.anchor.size(); ++n)
       for (int i = 0; i < model_.dimension; ++i)
-        if (const int row = row_of_contact_[n * model_.dimension + i]; row >= 0) add(row, T(made_.hold[n]));
+        if (const int row = row_of_contact_[n * model_.dimension + i]; row >= 0) add(row, T(made_.anchor[n]));
   }
   template <class Add>
   void for_each_entry_of(std::size_t p, const PointTangent<T>& tangent, Multipliers multipliers, Add&& add) const {
@@ -134,7 +134,7 @@ class PointSystem : public TangentSystem<T> {
   static constexpr double raised = 1 + 1e-10;
   void restore_factor(const FactorRecipe<T>& recipe, Counters& counters) {
     made_.valid = false;
-    if (recipe.valid) factorise(recipe.tangents, recipe.hold, counters);
+    if (recipe.valid) factorise(recipe.tangents, recipe.anchor, counters);
     made_.update = recipe.update;
   }
 
@@ -148,19 +148,21 @@ class PointSystem : public TangentSystem<T> {
   FactorRecipe<T> made_;                ///< what the last factor was made from
 
  private:
-  bool is_made_from(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold) const {
-    return made_.valid && is_held_by(hold) &&
+  bool is_made_from(const std::vector<PointTangent<T>>& tangents, const Vector<double>& anchor) const {
+    return made_.valid && is_anchored_by(anchor) &&
            std::equal(tangents.begin(), tangents.end(), made_.tangents.begin(), made_.tangents.end(),
                       [](const auto& a, const auto& b) { return detail::same_tangent(a, b); });
   }
-  bool is_held_by(const Vector<double>& hold) const { return hold.size() == made_.hold.size() && hold == made_.hold; }
+  bool is_anchored_by(const Vector<double>& anchor) const {
+    return anchor.size() == made_.anchor.size() && anchor == made_.anchor;
+  }
   Matrix<T> solve_updated(const Matrix<T>& b, Solving how);
 };
 
 template <class T>
-bool PointSystem<T>::update(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold,
+bool PointSystem<T>::update(const std::vector<PointTangent<T>>& tangents, const Vector<double>& anchor,
                             Counters& counters) {
-  if (!model_.effects.linear_bulk || !made_.valid || !is_held_by(hold)) return false;
+  if (!model_.effects.linear_bulk || !made_.valid || !is_anchored_by(anchor)) return false;
   if constexpr (std::is_same_v<T, double>) {
     std::vector<TangentUpdate::Change> changes;
     for (std::size_t p = 0; p < tangents.size(); ++p) {

@@ -73,15 +73,15 @@ void yield_rows(const Model& model, const std::vector<char>* which, double share
 ///   - Constraints that repeat one another. The tangent is singular. A compliance of 1e-8 shares the force out in the
 ///     least norm; it is far above the limit of singularity, and costs one iteration more.
 ///
-/// `redundant`: whether that compliance was needed; it is kept then. `hold`: as of the engine's factorise().
+/// `redundant`: whether that compliance was needed; it is kept then. `anchor`: as of the engine's factorise().
 template <class T>
 bool factorise_sharing(Engine<T>& engine, const Model& model, const std::vector<char>& decided,
                        std::vector<PointTangent<T>> tangents, bool& redundant, Counters& counters,
-                       const Vector<double>& hold = {}) {
+                       const Vector<double>& anchor = {}) {
   if (!decided.empty()) yield_rows(model, &decided, 1, tangents);
-  if (!redundant && engine.factorise(tangents, counters, hold)) return true;
+  if (!redundant && engine.factorise(tangents, counters, anchor)) return true;
   yield_rows(model, nullptr, 1e-8, tangents);
-  return redundant = engine.factorise(tangents, counters, hold);
+  return redundant = engine.factorise(tangents, counters, anchor);
 }
 
 }  // namespace stickslip

@@ -57,7 +57,7 @@ template <class T>
 struct FactorRecipe {
   bool valid = false;
   std::vector<PointTangent<T>> tangents = {};
-  Vector<double> hold = {};
+  Vector<double> anchor = {};
   TangentUpdate update = {};  ///< of that factor; its columns are solutions, which are kept
   long bytes() const {
     Eigen::Index numbers = 0;
@@ -105,9 +105,9 @@ class TangentSystem {
   // ---- bodies and points
 
   /// As those of Engine.
-  virtual bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& hold,
+  virtual bool factorise(const std::vector<PointTangent<T>>& tangents, const Vector<double>& anchor,
                          Counters& counters) = 0;
-  virtual bool update(const std::vector<PointTangent<T>>& /*tangents*/, const Vector<double>& /*hold*/,
+  virtual bool update(const std::vector<PointTangent<T>>& /*tangents*/, const Vector<double>& /*anchor*/,
                       Counters& /*counters*/) {
     return false;
   }

@@ -251,14 +251,15 @@ bool NewtonTangent<T>::factorise_in(const std::vector<ContactState>& branches, c
   auto tangents = point_tangents(branches, unknowns);
   if (task_.last && !task_.contact.model.effects.linear_bulk) tangents_ = tangents;
   if (!decided_.empty()) detail::yield_decided(task_.contact, decided_, tangents);
-  const auto& hold = task_.anchor.stiffness;
+  const auto& anchor = task_.anchor.stiffness;
   if (!redundant_) {
     const Stopwatch time(account_.seconds.backsolve);
-    if (engine_.update(tangents, account_.counters, hold)) return true;
+    if (engine_.update(tangents, account_.counters, anchor)) return true;
   }
   const Stopwatch time(account_.seconds.factorization);
-  if (!task_.solves_for_multipliers()) return engine_.factorise(tangents, account_.counters, hold);
-  return factorise_sharing(engine_, task_.contact.model, {}, std::move(tangents), redundant_, account_.counters, hold);
+  if (!task_.solves_for_multipliers()) return engine_.factorise(tangents, account_.counters, anchor);
+  return factorise_sharing(engine_, task_.contact.model, {}, std::move(tangents), redundant_, account_.counters,
+                           anchor);
 }
 
 }  // namespace stickslip

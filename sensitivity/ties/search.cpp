@@ -47,7 +47,7 @@ class TieSearch {
     if (by_flipping()) return true;
     if (!diverged_) {
       at_ = found;
-      hold();
+      take_holding();
       if (by_flipping() || by_enumeration()) return true;
     }
     return at_rounding();
@@ -55,7 +55,7 @@ class TieSearch {
 
   /// Takes the choices that hold most. Why: a body that is held by friction alone, or by a contact about to open, then
   /// has a regular tangent.
-  void hold() {
+  void take_holding() {
     for (const auto& tie : ties_)
       if (tie.holds()) tie.set(problem_.model, tie.choices(problem_.model).front(), at_);
   }
@@ -199,7 +199,7 @@ bool differentiate_side(Differentiation& problem, const State<double>& previous,
     TieSearch choices(problem, previous, of, at, factor, along);
     if (choices.run()) return true;
     if (unconfirmed == Unconfirmed::fails) return false;
-    choices.hold();
+    choices.take_holding();
     return differentiate_alone(problem, previous, of);
   };
   if (!scheme_of(problem.method).of_each_augmentation) return search(increment, increment.state, increment.rho_factor);
