@@ -103,6 +103,39 @@ ClosedForm cattaneo_mindlin_form() {
           cattaneo_tractions};
 }
 
+Out hertz_point(const In& in, Space) {
+  const D &P = in.at("force"), &R = in.at("radius");
+  const D a = pow(D(3) * P * R / (D(4) * in.at("modulus")), 1.0 / 3);
+  return {{"contact_radius", a}, {"peak_pressure", D(3) * P / (D(2 * pi) * a * a)}, {"approach", a * a / R}};
+}
+
+const ClosedForm::Quantity pressing{"force", "pressing force", positive},
+    contact_radius{"contact_radius", "radius of the contact"}, approach{"approach", "of places far from the contact"};
+
+ClosedForm hertz_point_form() {
+  return {"hertz_point",
+          "two balls pressed together, in space [J85 4.2]",
+          {pressing, radius, modulus},
+          {contact_radius, peak, approach},
+          hertz_point};
+}
+
+Out cattaneo_mindlin_point(const In& in, Space space) {
+  Out out = hertz_point(in, space);
+  const D& Q = in.at("tangential_force");
+  const D share = D(1) - (value(Q) < 0 ? -Q : Q) / (in.at("friction") * in.at("force"));
+  out["stick_radius"] = value(share) > 0 ? out.at("contact_radius") * pow(share, 1.0 / 3) : D(0);
+  return out;
+}
+
+ClosedForm cattaneo_mindlin_point_form() {
+  return {"cattaneo_mindlin_point",
+          "then sheared until a ring slips [J85 7.2]",
+          {pressing, {"tangential_force", "shearing force, less than friction times force"}, radius, modulus, friction},
+          {contact_radius, peak, approach, {"stick_radius", "radius of what sticks"}},
+          cattaneo_mindlin_point};
+}
+
 Out flat_punch(const In& in, Space) {
   const D &P = in.at("force"), &a = in.at("half_width");
   return {{"centre_pressure", P / (D(pi) * a)}, {"mean_pressure", P / (D(2) * a)}};
@@ -270,8 +303,9 @@ ClosedForm cantilever_floor_form() {
 
 const std::vector<ClosedForm>& closed_forms() {
   static const std::vector<ClosedForm> all = {
-      hertz_line_form(), cattaneo_mindlin_form(), flat_punch_form(),      press_fit_form(),
-      belt_form(),       pull_out_form(),         cantilever_stop_form(), cantilever_floor_form()};
+      hertz_line_form(),      cattaneo_mindlin_form(), hertz_point_form(), cattaneo_mindlin_point_form(),
+      flat_punch_form(),      press_fit_form(),        belt_form(),        pull_out_form(),
+      cantilever_stop_form(), cantilever_floor_form()};
   return all;
 }
 

@@ -6,6 +6,9 @@
 ///                   stress: sum 1/E).
 /// cattaneo_mindlin  [J85 7.2] then sheared by Q < mu P: c = b sqrt(1 - Q/(mu P)),
 ///                   q(x) = mu p(x) - (c/b) mu p0 sqrt(1 - x^2/c^2) where |x| < c.
+/// hertz_point       [J85 4.2] two balls, force P: a = (3 P R / (4 E*))^(1/3), p0 = 3 P / (2 pi a^2), approach a^2 / R.
+/// cattaneo_mindlin_point
+///                   [J85 7.2] then sheared by Q < mu P: what sticks has the radius a (1 - Q/(mu P))^(1/3).
 /// flat_punch        [J85 2.8] rigid, frictionless, width 2a, on a half plane: p(x) = P / (pi sqrt(a^2 - x^2)).
 /// press_fit         [Lame 1852] ring Ri..R in ring R..Ro, interference D, one material: with E1 = E/(1 - nu^2),
 ///                   n = nu/(1 - nu) (plane stress: E, nu),
