@@ -11,7 +11,9 @@ namespace stickslip {
 namespace {
 
 /// The element of the plane mesh that an element of space is made of.
-std::string plane_element(const std::string& element) { return element == "T4" ? "T3" : "Q4"; }
+std::string plane_element(const std::string& element) {
+  return structured_shape(element, 3) == ElementShape::tet4 ? "T3" : "Q4";
+}
 
 /// The three tetrahedra of the prism on a triangle, corners counter-clockwise. The nodes above have numbers that are
 /// greater by `layer`.
@@ -65,6 +67,13 @@ std::string fault(const ExtrudedMesh& extruded, const std::string& element, int 
   if (extruded.cells < 1) return "cells of an extruded mesh must be at least 1";
   if (!(extruded.to.value > extruded.from.value)) return "to of an extruded mesh must be greater than from";
   return std::visit([&](const auto& mesh) { return fault(mesh, plane_element(element), 2); }, extruded.mesh);
+}
+
+Mesh plane_with_middles(const ExtrudedMesh& extruded, ElementShape shape) {
+  const bool triangles = linear_shape(shape) == ElementShape::tet4;
+  return with_middles(
+      std::visit([&](const auto& mesh) { return topology(mesh, triangles ? "T3" : "Q4", 2); }, extruded.mesh),
+      triangles ? ElementShape::tri6 : ElementShape::quad8);
 }
 
 Mesh topology(const ExtrudedMesh& extruded, const std::string& element, int) {

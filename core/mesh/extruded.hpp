@@ -5,8 +5,11 @@
 /// of neighbours agree. The sides are those of the plane mesh, and front and back, where z is `from` and `to`.
 #pragma once
 
+#include <algorithm>
+#include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <variant>
 
 #include "core/algebra/described.hpp"
@@ -14,6 +17,7 @@
 #include "core/mesh/disk.hpp"
 #include "core/mesh/half_disk.hpp"
 #include "core/mesh/mesh.hpp"
+#include "core/mesh/middles.hpp"
 #include "core/mesh/quad.hpp"
 #include "core/mesh/ring.hpp"
 
@@ -48,6 +52,8 @@ struct ExtrudedMesh {
 /// What is wrong with the description, or "".
 std::string fault(const ExtrudedMesh&, const std::string& element, int dimension);
 Mesh topology(const ExtrudedMesh&, const std::string& element, int dimension);
+/// The plane mesh with middles, on which a mesh of quadratic elements of space stands.
+Mesh plane_with_middles(const ExtrudedMesh&, ElementShape of_space);
 
 /// Coordinates, 3 x nodes.
 template <class T>
@@ -65,6 +71,28 @@ Points<T> coordinates(const ExtrudedMesh& extruded, const Numbers<T>& numbers, i
     }
   }
   return points;
+}
+
+/// Puts the middles of edges over an edge of the plane mesh where that has its middle.
+template <class T>
+void bend(const ExtrudedMesh& extruded, const Mesh& mesh, const Numbers<T>& numbers, Points<T>& points) {
+  const Mesh plane = plane_with_middles(extruded, mesh.shape);
+  Points<T> places = std::visit([&](const auto& kind) { return coordinates(kind, numbers, 2); }, extruded.mesh);
+  const auto layer = static_cast<int>(places.cols());
+  places = with_middles(plane, places);
+  const auto bend_sides = [&](const auto& kind) {
+    if constexpr (requires { bend(kind, plane, numbers, places); }) bend(kind, plane, numbers, places);
+  };
+  std::visit(bend_sides, extruded.mesh);
+  std::map<std::pair<int, int>, int> middle_of;
+  for (std::size_t k = 0; k < plane.middles.size(); ++k)
+    middle_of[std::minmax(plane.middles[k][0], plane.middles[k][1])] = layer + static_cast<int>(k);
+  const auto first = layer * (extruded.cells + 1);
+  for (std::size_t k = 0; k < mesh.middles.size(); ++k) {
+    const int a = mesh.middles[k][0] % layer, b = mesh.middles[k][1] % layer;
+    const int below = a == b ? a : middle_of.at(std::minmax(a, b));
+    for (int i = 0; i < 2; ++i) points(i, first + static_cast<Eigen::Index>(k)) = places(i, below);
+  }
 }
 
 }  // namespace stickslip

@@ -17,7 +17,8 @@ Mesh make_mesh(const MeshDescription& description, const std::string& element, i
     throw std::invalid_argument(message);
   Mesh mesh = std::visit([&](const auto& kind) { return topology(kind, element, dimension); }, description);
   const bool imported = std::holds_alternative<ImportedMesh>(description);
-  return is_quadratic(element) && !imported ? with_middles(mesh) : mesh;
+  const auto quadratic = quadratic_shape(element);
+  return quadratic && !imported ? with_middles(mesh, *quadratic) : mesh;
 }
 
 template Points<double> make_points(const MeshDescription&, const Numbers<double>&, int);

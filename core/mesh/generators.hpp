@@ -32,8 +32,7 @@ Filling filling_of(const MeshDescription&);
 
 /// What is wrong with a description, this element and this dimension of the space, as a sentence without a full stop;
 /// "" if nothing. `element`: "Q4", "Q4_mean_dilatation", "Q8", "T3" or "T6" (plane meshes), "H8",
-/// "H8_mean_dilatation" or "T4" (meshes of space), "bar" (chains), "point", or
-/// "" for the default.
+/// "H8_mean_dilatation", "H20", "H27", "T4" or "T10" (meshes of space), "bar" (chains), "point", or "" for the default.
 std::string mesh_fault(const MeshDescription&, const std::string& element, int dimension);
 
 /// Topology and sides. Throws std::invalid_argument with mesh_fault.
@@ -51,11 +50,13 @@ Points<T> make_points(const MeshDescription& description, const Mesh& mesh, cons
   Points<T> points = make_points(description, numbers, mesh.dimension);
   if (mesh.middles.empty()) return points;
   points = with_middles(mesh, points);
-  std::visit(
-      [&](const auto& kind) {
-        if constexpr (requires { bend(kind, mesh, numbers, points); }) bend(kind, mesh, numbers, points);
-      },
-      description);
+  const auto bend_sides = [&](const auto& kind) {
+    if constexpr (requires { bend(kind, mesh, numbers, points); }) bend(kind, mesh, numbers, points);
+  };
+  std::visit(bend_sides, description);
+  if (mesh.centres.empty()) return points;
+  place_centres(mesh, points);  // between middles that lie on curved sides now; those of curved faces go there again
+  std::visit(bend_sides, description);
   return points;
 }
 

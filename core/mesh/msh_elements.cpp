@@ -14,7 +14,7 @@ void append_edge(const ElementFacet& edge, Side& side, std::set<int>& listed) {
   const auto list = [&](int node) {
     if (listed.insert(node).second) side.nodes.push_back(node);
   };
-  const auto [a, b, middle, unused] = edge;
+  const int a = edge[0], b = edge[1], middle = edge[2];
   list(a);
   if (middle >= 0) {
     list(middle);
@@ -56,8 +56,10 @@ Side side_of_faces(const std::vector<ElementFacet>& faces) {
   Side side;
   std::set<int> ascending;
   for (const ElementFacet& face : faces) {
-    side.facets.emplace_back(face.begin(), face.begin() + (face[3] < 0 ? 3 : 4));
-    ascending.insert(side.facets.back().begin(), side.facets.back().end());
+    const auto nodes = nodes_of(face);
+    for (auto& facet : facets_of_side(nodes, 3)) side.facets.push_back(std::move(facet));
+    if (nodes.size() > 4) side.quadratic.push_back(nodes);
+    ascending.insert(nodes.begin(), nodes.end());
   }
   side.nodes.assign(ascending.begin(), ascending.end());
   return side;
@@ -73,8 +75,9 @@ double orientation(const Mesh& mesh, const Points<double>& points, int element) 
     place.head(mesh.dimension) = points.col(nodes[k]) - points.col(nodes[0]);
     return place;
   };
-  if (mesh.shape == ElementShape::tet4) return at(1).cross(at(2)).dot(at(3));
-  if (mesh.shape == ElementShape::hex8) {
+  const ElementShape linear = linear_shape(mesh.shape);
+  if (linear == ElementShape::tet4) return at(1).cross(at(2)).dot(at(3));
+  if (linear == ElementShape::hex8) {
     const Vec<double, 3> x = at(1) + at(2) + at(5) + at(6) - at(3) - at(4) - at(7),
                          y = at(2) + at(3) + at(6) + at(7) - at(1) - at(4) - at(5),
                          z = at(4) + at(5) + at(6) + at(7) - at(1) - at(2) - at(3);
@@ -89,29 +92,57 @@ double orientation(const Mesh& mesh, const Points<double>& points, int element) 
 void turn_over(Mesh& mesh, int element) {
   const int count = nodes_of(mesh.shape), corners = corners_of(mesh.shape);
   const auto first = mesh.connectivity.begin() + static_cast<std::ptrdiff_t>(element) * count;
-  if (mesh.shape == ElementShape::tet4) {
-    std::swap(first[0], first[1]);
-  } else if (mesh.shape == ElementShape::hex8) {
-    std::swap_ranges(first, first + 4, first + 4);
-  } else {
+  if (!is_solid(mesh.shape)) {
     std::reverse(first + 1, first + corners);
     std::reverse(first + corners, first + count);  // the last side is now the first
+    return;
+  }
+  // of a tetrahedron corners 0 and 1 change places, of a hexahedron bottom and top; the others go with their corners
+  const auto turned_corner = [&](int a) { return corners == 8 ? (a + 4) % 8 : a < 2 ? 1 - a : a; };
+  const auto& around = corners_around(mesh.shape);
+  const std::vector<int> nodes(first, first + count);
+  for (int a = 0; a < count; ++a) {
+    std::vector<int> of = around[a];
+    for (int& corner : of) corner = turned_corner(corner);
+    const auto found = std::find_if(around.begin(), around.end(), [&](const std::vector<int>& other) {
+      return std::is_permutation(other.begin(), other.end(), of.begin(), of.end());
+    });
+    first[a] = nodes[found - around.begin()];
   }
 }
 
 ElementFacet element_facet(const std::vector<int>& nodes, int of) {
-  ElementFacet facet{-1, -1, -1, -1};
+  ElementFacet facet;
+  facet.fill(-1);
   std::copy(nodes.begin(), nodes.end(), facet.begin());
-  const auto end = facet.begin() + static_cast<std::ptrdiff_t>(nodes.size());
-  if (of == 3) std::rotate(facet.begin(), std::min_element(facet.begin(), end), end);
+  if (of != 3) return facet;
+  const int corners = corners_of_face(nodes.size());
+  const auto least = std::min_element(facet.begin(), facet.begin() + corners) - facet.begin();
+  std::rotate(facet.begin(), facet.begin() + least, facet.begin() + corners);
+  if (nodes.size() > 4)
+    std::rotate(facet.begin() + corners, facet.begin() + corners + least, facet.begin() + 2 * corners);
   return facet;
 }
 
+std::vector<int> nodes_of(const ElementFacet& facet) {
+  return {facet.begin(), std::find(facet.begin(), facet.end(), -1)};
+}
+
+ElementFacet without_middles(const ElementFacet& facet, int of) {
+  ElementFacet bare = facet;
+  std::fill(bare.begin() + (of == 3 ? corners_of_face(nodes_of(facet).size()) : of), bare.end(), -1);
+  return bare;
+}
+
 ElementFacet turned(const ElementFacet& facet, int of) {
-  if (of == 1) return facet;
-  if (of == 2) return {facet[1], facet[0], facet[2], -1};
-  if (facet[3] < 0) return {facet[0], facet[2], facet[1], -1};
-  return {facet[0], facet[3], facet[2], facet[1]};
+  ElementFacet back = facet;
+  if (of == 2) std::swap(back[0], back[1]);
+  if (of != 3) return back;
+  const auto count = nodes_of(facet).size();
+  const int corners = corners_of_face(count);
+  std::reverse(back.begin() + 1, back.begin() + corners);
+  if (count > 4) std::reverse(back.begin() + corners, back.begin() + 2 * corners);  // the last edge is now the first
+  return back;
 }
 
 std::vector<ElementFacet> facets_of_element(const Mesh& mesh, int element) {

@@ -8,7 +8,7 @@
 
 namespace stickslip {
 
-/// Positive where an element is counter-clockwise, in space right-handed: twice its area between its corners; in space
+/// Positive where an element is counter-clockwise, in space right-handed, by its corners: twice its area; in space
 /// the determinant of the edges of a tetrahedron, or of the middle lines of a hexahedron, times 64.
 double orientation(const Mesh&, const Points<double>&, int element);
 
@@ -19,11 +19,16 @@ void turn_over(Mesh&, int element);
 /// direction, if they are equal.
 ///   of = 1: a node
 ///   of = 2: an edge from its start to its end, the element on its left, and its middle
-///   of = 3: a face of three or four nodes, counter-clockwise seen from outside of the element, the least node first
-using ElementFacet = std::array<int, 4>;
+///   of = 3: a face, counter-clockwise seen from outside of the element: its corners, the least node first, and its
+///           middles, as in sides_of
+using ElementFacet = std::array<int, 9>;
 
-/// Of its nodes in turn, four at most.
+/// Of its nodes in turn, nine at most.
 ElementFacet element_facet(const std::vector<int>& nodes, int of);
+/// The nodes of a side.
+std::vector<int> nodes_of(const ElementFacet&);
+/// Of an edge its ends alone, of a face its corners.
+ElementFacet without_middles(const ElementFacet&, int of);
 /// The same side seen from the other element that has it.
 ElementFacet turned(const ElementFacet&, int of);
 /// The sides of an element of a mesh, in the order of sides_of.

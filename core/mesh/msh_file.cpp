@@ -30,7 +30,10 @@ std::string element_type_name(long long type) {
                                           "18-node prism",
                                           "14-node pyramid",
                                           "1-node point",
-                                          "8-node quadrangle"};
+                                          "8-node quadrangle",
+                                          "20-node hexahedron",
+                                          "15-node prism",
+                                          "13-node pyramid"};
   if (type >= 1 && type < static_cast<long long>(std::size(names))) return names[type];
   return "unknown or of higher order";
 }
@@ -62,9 +65,28 @@ std::optional<ElementKind> kind_of(long long type) {
       return ElementKind{ElementShape::tet4, 4};
     case 5:
       return ElementKind{ElementShape::hex8, 8};
+    case 10:
+      return ElementKind{ElementShape::quad8, 9};
+    case 11:
+      return ElementKind{ElementShape::tet10, 10};
+    case 17:
+      return ElementKind{ElementShape::hex20, 20};
+    case 12:
+      return ElementKind{ElementShape::hex27, 27};
     default:
       return std::nullopt;
   }
+}
+
+/// Where Gmsh's node k of an element stands in ours. It lists the middles of edges as 01 12 20 30 32 31 of a
+/// tetrahedron, and of a hexahedron as 01 03 04 12 15 23 26 37 45 47 56 67, then its faces 0321 0154 0473 1265 2376
+/// 4567 [Gmsh reference manual, "Node ordering"].
+int own_place(ElementShape shape, int k) {
+  static constexpr std::array<int, 10> tetrahedron{0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
+  static constexpr std::array<int, 27> hexahedron{0,  1,  2,  3,  4,  5,  6,  7,  8,  11, 16, 9,  17, 10,
+                                                  18, 19, 12, 15, 13, 14, 24, 22, 20, 21, 23, 25, 26};
+  if (shape == ElementShape::tet10) return tetrahedron.at(k);
+  return linear_shape(shape) == ElementShape::hex8 ? hexahedron.at(k) : k;
 }
 
 int dimension_of(ElementShape shape) {
@@ -253,7 +275,7 @@ class Parser {
         offset, (tag ? "element " + std::to_string(*tag) : "a block of elements") + " has type " +
                     std::to_string(type) + " (" + element_type_name(type) +
                     "), which is not read; plane bodies of 3- or 6-node triangles or 4- or 8-node quadrangles are, and "
-                    "bodies in space of 4-node tetrahedra or 8-node hexahedra"};
+                    "bodies in space of 4- or 10-node tetrahedra or 8-, 20- or 27-node hexahedra"};
   }
 
   void add_element(long long tag, ElementKind kind, const std::vector<long long>& groups, std::size_t offset) {
@@ -265,7 +287,7 @@ class Parser {
       if (known == position_.end())
         throw MshFault{node_offset, "element " + std::to_string(tag) + " has node " + std::to_string(node) +
                                         ", which is not in $Nodes above it"};
-      element.nodes[k] = known->second;
+      element.nodes[own_place(kind.shape, k)] = known->second;
     }
     for (long long group : groups) {
       element.group.second = group;

@@ -25,10 +25,10 @@ struct MshNode {
 struct MshElement {
   long long tag = 0;
   ElementShape shape = ElementShape::point;  ///< of a line: bar2, whether or not it has a middle
-  int node_count = 0;
-  std::array<int, 8> nodes{};  ///< positions in MshFile::nodes, `node_count` of them
-  MshGroup group;              ///< number 0: in no group
-  std::size_t offset = 0;      ///< of its first character in the text
+  int node_count = 0;           ///< of the file: a face of nine nodes counts as one of eight, with one more
+  std::array<int, 27> nodes{};  ///< positions in MshFile::nodes, `node_count` of them, in the order of ElementShape
+  MshGroup group;               ///< number 0: in no group
+  std::size_t offset = 0;       ///< of its first character in the text
 };
 
 struct MshFile {

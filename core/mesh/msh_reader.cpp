@@ -111,6 +111,13 @@ class Import {
     body.mesh.dimension = dimension_;
     body.mesh.shape = elements.front()->shape;
     for (const MshElement* element : elements)
+      if (element->node_count != nodes_of(element->shape)) {
+        fault(element, "element " + std::to_string(element->tag) + " of body \"" + body.body +
+                           "\" is a 9-node quadrangle, which is read as a face of a 27-node hexahedron alone; save "
+                           "plane bodies with 8 nodes (Gmsh: Mesh.SecondOrderIncomplete = 1)");
+        return std::nullopt;
+      }
+    for (const MshElement* element : elements)
       if (element->shape != body.mesh.shape) {
         fault(element, "body \"" + body.body + "\" mixes elements of unlike kinds, from element " +
                            std::to_string(element->tag) + " on");
@@ -223,10 +230,8 @@ class Import {
     return true;
   }
 
-  /// Of an edge its ends alone: two that differ in their middles overlap too.
-  ElementFacet ends_of(const ElementFacet& facet) const {
-    return dimension_ == 2 ? ElementFacet{facet[0], facet[1], -1, -1} : facet;
-  }
+  /// Without middles: two sides that differ in them overlap too.
+  ElementFacet ends_of(const ElementFacet& facet) const { return without_middles(facet, dimension_); }
 
   /// Notes nodes of a body at one place, and parts of it that share no node: elements do not hold together there.
   /// `number`: of the nodes of the file in the body, or -1.
@@ -247,8 +252,9 @@ class Import {
 
   /// Whether an element of a group is the first with its nodes; otherwise it is reported, as loads would count twice.
   bool is_new(const MshElement* element, const MshGroup& group, std::map<ElementFacet, const MshElement*>& listed) {
-    ElementFacet nodes{-1, -1, -1, -1};
-    std::copy_n(element->nodes.begin(), std::min(element->node_count, 4), nodes.begin());
+    ElementFacet nodes;
+    nodes.fill(-1);
+    std::copy_n(element->nodes.begin(), std::min(element->node_count, static_cast<int>(nodes.size())), nodes.begin());
     std::sort(nodes.begin(), nodes.end());
     const auto [first, inserted] = listed.try_emplace(nodes, element);
     if (!inserted)
@@ -268,7 +274,6 @@ class Import {
       std::vector<ElementFacet> own;
       std::map<ElementFacet, const MshElement*> listed;
       for (const MshElement* element : elements) {
-        if (element->node_count > 4) continue;  // a side of a quadratic element, which no body in space has
         std::vector<int> at(element->nodes.begin(), element->nodes.begin() + element->node_count);
         for (int& n : at) n = node[n];
         const ElementFacet facet = element_facet(at, of), back = turned(facet, of);
@@ -295,9 +300,13 @@ class Import {
     for (int e = 0; e < mesh.element_count(); ++e)
       for (const ElementFacet& facet : facets_of_element(mesh, e)) {
         facets.insert(facet);
-        const int corners = facet[3] < 0 ? 3 : 4;
-        for (int k = 0; mesh.dimension == 3 && k < corners; ++k)
-          edges.insert({facet[k], facet[(k + 1) % corners], -1, -1});
+        const auto nodes = nodes_of(facet);
+        const int corners = corners_of_face(nodes.size());
+        for (int k = 0; mesh.dimension == 3 && k < corners; ++k) {
+          std::vector<int> edge{nodes[k], nodes[(k + 1) % corners]};
+          if (is_quadratic(mesh.shape)) edge.push_back(nodes[corners + k]);
+          edges.insert(element_facet(edge, 2));
+        }
       }
     return {facets, edges};
   }

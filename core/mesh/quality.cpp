@@ -10,12 +10,14 @@
 #include <numeric>
 #include <vector>
 
+#include "core/mesh/shapes.hpp"
+
 namespace stickslip {
 namespace {
 
 /// The three neighbours of each corner of a solid element, right-handed.
 std::vector<std::array<int, 3>> corners_in_space(ElementShape shape) {
-  if (shape == ElementShape::tet4) return {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};
+  if (linear_shape(shape) == ElementShape::tet4) return {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};
   return {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
 }
 
@@ -31,8 +33,41 @@ void for_each_corner_in_space(const int* nodes, ElementShape shape, const Points
   }
 }
 
-/// Whether the volume at each corner of a solid element is positive.
+/// Whether a quadratic solid element has a positive volume at its nodes and at the points of its quadrature.
+bool has_volume(const int* nodes, ElementShape shape, const Points<double>& points) {
+  bool positive = true;
+  with_shape(shape, [&]<class Shape>(Shape) {
+    if constexpr (Shape::dimension == 3) {
+      const Vec<double, 3> origin = points.col(nodes[0]);
+      Nodal<double, Shape> X;
+      for (int a = 0; a < Shape::nodes; ++a) X.col(a) = points.col(nodes[a]) - origin;
+      const double reach = origin.norm() + X.colwise().norm().maxCoeff();
+      const auto check = [&](const typename Shape::Point& at) {
+        const Mat<double, 3> J = X * at.gradient.transpose();
+        const double size = J.colwise().norm().maxCoeff();
+        const double rounding = std::numeric_limits<double>::epsilon() * (reach + size);
+        positive &= J.determinant() > 3 * rounding * size * size;
+      };
+      static const auto at_nodes = [] {
+        std::vector<typename Shape::Point> at;
+        for (int a = 0; a < Shape::nodes; ++a) {
+          const auto place = natural_node<Shape>(a);
+          at.push_back(Shape::at(place[0], place[1], place[2], 0));
+        }
+        return at;
+      }();
+      static const auto inside = Shape::quadrature();
+      for (const auto& at : at_nodes) check(at);
+      for (const auto& at : inside) check(at);
+    }
+  });
+  return positive;
+}
+
+/// Whether the volume at each corner of a solid element is positive, and of a quadratic one at all nodes and points of
+/// its quadrature.
 bool is_convex_in_space(const int* nodes, ElementShape shape, const Points<double>& points) {
+  if (is_quadratic(shape)) return has_volume(nodes, shape, points);
   bool convex = true;
   for_each_corner_in_space(nodes, shape, points, [&](const Vec<double, 3>& here, const Mat<double, 3>& edges) {
     const double size = edges.colwise().norm().maxCoeff();

@@ -8,9 +8,9 @@
 
 namespace stickslip {
 
-/// Number of the first element with a corner that is not convex (Jacobian there zero, negative or not a number), or
-/// with zero length for a bar; none if all are usable. A corner counts as flat when its sine is within rounding of
-/// zero. A point is always usable.
+/// Number of the first element with a corner that is not convex (Jacobian there zero, negative or not a number; of a
+/// quadratic element in space also at its other nodes and in its quadrature), or with zero length for a bar; none if
+/// all are usable. A corner counts as flat when its sine is within rounding of zero. A point is always usable.
 std::optional<int> first_inverted_element(const Mesh&, const Points<double>&);
 
 /// Largest relative rounding of a strain: four digits, as many as a run that passes as solved has at least

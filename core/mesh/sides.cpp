@@ -124,7 +124,8 @@ Side boundary_of(const Mesh& mesh) {
     Side side;
     std::set<int> ascending;
     for (const auto& [element, nodes] : sides) {
-      side.facets.push_back(nodes);
+      for (auto& facet : facets_of_side(nodes, 3)) side.facets.push_back(std::move(facet));
+      if (is_quadratic(mesh.shape)) side.quadratic.push_back(nodes);
       ascending.insert(nodes.begin(), nodes.end());
     }
     side.nodes.assign(ascending.begin(), ascending.end());

@@ -6,7 +6,7 @@
 namespace stickslip {
 namespace {
 
-/// Nodes and their weights: the place of a new node. Weights are values of the shape functions (core/solids/shapes.hpp)
+/// Nodes and their weights: the place of a new node. Weights are values of the shape functions (core/mesh/shapes.hpp)
 /// at the natural coordinates of the new node.
 using Weights = std::vector<std::pair<int, double>>;
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,15 +43,22 @@ double product(const Cells& cells) {
 }
 
 /// Shape of the corners of an element in a generated mesh. In the plane: a triangle for "T3" and "T6", else a
-/// quadrilateral; "" means "Q4". Middles of T6 and Q8 come later (core/mesh/middles.hpp). In space: a tetrahedron for
-/// "T4", else a hexahedron; "" means "H8".
+/// quadrilateral; "" means "Q4". In space: a tetrahedron for "T4" and "T10", else a hexahedron; "" means "H8". Middles
+/// come later (core/mesh/middles.hpp).
 inline ElementShape structured_shape(const std::string& element, int dimension = 2) {
-  if (dimension == 3) return element == "T4" ? ElementShape::tet4 : ElementShape::hex8;
+  if (dimension == 3) return element == "T4" || element == "T10" ? ElementShape::tet4 : ElementShape::hex8;
   return element == "T3" || element == "T6" ? ElementShape::tri3 : ElementShape::quad4;
 }
 
-/// Whether a generated mesh of this element gets middles.
-inline bool is_quadratic(const std::string& element) { return element == "T6" || element == "Q8"; }
+/// Shape of an element with middles; nothing of one without.
+inline std::optional<ElementShape> quadratic_shape(const std::string& element) {
+  if (element == "T6") return ElementShape::tri6;
+  if (element == "Q8") return ElementShape::quad8;
+  if (element == "T10") return ElementShape::tet10;
+  if (element == "H20") return ElementShape::hex20;
+  if (element == "H27") return ElementShape::hex27;
+  return std::nullopt;
+}
 
 /// Whether the element's dilatation is its mean.
 inline bool has_mean_dilatation(const std::string& element) {
@@ -60,9 +68,9 @@ inline bool has_mean_dilatation(const std::string& element) {
 /// What is wrong with an element of a generated mesh, or "". `what`: "a box".
 inline std::string element_fault(const std::string& what, const std::string& element, int dimension = 2) {
   if (dimension == 3) {
-    for (const char* name : {"", "H8", "H8_mean_dilatation", "T4"})
+    for (const char* name : {"", "H8", "H8_mean_dilatation", "H20", "H27", "T4", "T10"})
       if (element == name) return "";
-    return what + " in space has elements H8, H8_mean_dilatation or T4, not " + element;
+    return what + " in space has elements H8, H8_mean_dilatation, H20, H27, T4 or T10, not " + element;
   }
   for (const char* name : {"", "Q4", "Q4_mean_dilatation", "Q8", "T3", "T6"})
     if (element == name) return "";

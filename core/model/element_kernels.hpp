@@ -71,6 +71,9 @@ const ElementKernels<T>& kernels_of(const Model& model, int b) {
   STICKSLIP_ELEMENTS_OF(T, Tri6);        \
   STICKSLIP_ELEMENTS_OF(T, Quad8);       \
   STICKSLIP_ELEMENTS_OF(T, Tet4);        \
-  STICKSLIP_ELEMENTS_OF(T, Hex8)
+  STICKSLIP_ELEMENTS_OF(T, Hex8);        \
+  STICKSLIP_ELEMENTS_OF(T, Tet10);       \
+  STICKSLIP_ELEMENTS_OF(T, Hex20);       \
+  STICKSLIP_ELEMENTS_OF(T, Hex27)
 
 }  // namespace stickslip

@@ -183,26 +183,38 @@ Vector<T> follower_forces(const Model& model, const Slots<T>& slots, double t, c
 
 namespace detail {
 
+/// Hands out the derivatives of the forces on a side by its displacements. `dofs`: at least as many as it has.
+template <int D, int dofs, class T>
+void follow_tangent(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at, const FollowedEdge<T>& edge,
+                    const ElementSink<T>& sink) {
+  using Probe = Dual<dofs, T>;
+  const int n = static_cast<int>(edge.nodes.size());
+  const auto places =
+      present_places<Probe>(slots, edge.body, edge.nodes, at.displacement,
+                            [](const T& x, std::size_t k) { return Probe::seed(x, static_cast<int>(k)); });
+  const auto& depth = slots.depths[edge.body];
+  const auto force = pressure_on<Probe>(places, edge.loaded, {depth.of_revolution, Probe(depth.thickness)},
+                                        [&](int point) { return Probe(edge.pressure_at(point)); });
+  Matrix<T> K(D * n, D * n);
+  for (int r = 0; r < D * n; ++r)
+    for (int c = 0; c < D * n; ++c) K(r, c) = force(r % D, r / D).d[c];
+  sink(edge.nodes, K);
+  if (!edge.stretch.empty()) {
+    const Points<T> now = places.unaryExpr([](const Probe& x) { return x.v; });
+    add_thickness_tangent(model, slots, edge, now, sink);
+  }
+}
+
 template <int D, class T>
 void visit_follower_tangents(const Model& model, const Slots<T>& slots, const BodyMotion<T>& at,
                              const ElementSink<T>& sink) {
-  using Probe = Dual<D == 2 ? 6 : 12, T>;  // dofs of a side
   for_each_followed_edge(model, slots, at.time, at.displacement, [&](const FollowedEdge<T>& edge) {
-    const int n = static_cast<int>(edge.nodes.size());
-    const auto places =
-        present_places<Probe>(slots, edge.body, edge.nodes, at.displacement,
-                              [](const T& x, std::size_t k) { return Probe::seed(x, static_cast<int>(k)); });
-    const auto& depth = slots.depths[edge.body];
-    const auto force = pressure_on<Probe>(places, edge.loaded, {depth.of_revolution, Probe(depth.thickness)},
-                                          [&](int point) { return Probe(edge.pressure_at(point)); });
-    Matrix<T> K(D * n, D * n);
-    for (int r = 0; r < D * n; ++r)
-      for (int c = 0; c < D * n; ++c) K(r, c) = force(r % D, r / D).d[c];
-    sink(edge.nodes, K);
-    if (!edge.stretch.empty()) {
-      const Points<T> now = places.unaryExpr([](const Probe& x) { return x.v; });
-      add_thickness_tangent(model, slots, edge, now, sink);
-    }
+    if constexpr (D == 2)
+      follow_tangent<D, 6>(model, slots, at, edge, sink);
+    else if (edge.nodes.size() <= 4)
+      follow_tangent<D, 12>(model, slots, at, edge, sink);
+    else
+      follow_tangent<D, 27>(model, slots, at, edge, sink);
   });
 }
 

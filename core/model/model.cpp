@@ -8,12 +8,12 @@
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/quality.hpp"
+#include "core/mesh/shapes.hpp"
 #include "core/mesh/sides.hpp"
 #include "core/model/pairing.hpp"
 #include "core/model/response_places.hpp"
 #include "core/model/slots.hpp"
 #include "core/model/supports.hpp"
-#include "core/solids/shapes.hpp"
 
 namespace stickslip {
 namespace {

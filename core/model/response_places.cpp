@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/solids/shapes.hpp"
+#include "core/mesh/shapes.hpp"
 
 namespace stickslip {
 namespace {

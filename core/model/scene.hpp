@@ -30,7 +30,7 @@ struct Body {
   std::string name;
   MeshDescription mesh;
   Material material;
-  std::string element;     ///< "T3", "Q4", "Q4_mean_dilatation", "T6", "Q8", "bar" or "" (follows from the mesh)
+  std::string element;     ///< as in generators.hpp: "Q4", "T10", ...; "": follows from mesh and material
   Number area = 1.0;       ///< of a bar's cross-section
   Number thickness = 1.0;  ///< of a continuum in a plane space
 };

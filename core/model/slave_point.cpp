@@ -32,7 +32,8 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
   point.slave_body = pairing.slave.body;
   for (const auto& facet : pairing.slave.facets)
     if (std::find(facet.begin(), facet.end(), node) != facet.end()) point.area_facets.push_back(facet);
-  for (const auto& edge : pairing.slave.edges)
+  // in space a corner of a quadratic face has no share of it, or a negative one
+  for (const auto& edge : model.dimension == 3 ? pairing.slave.facets : pairing.slave.edges)
     if (std::find(edge.begin(), edge.end(), node) != edge.end()) point.area_edges.push_back(edge);
   point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
   point.mesh_size = local_size(points, point);

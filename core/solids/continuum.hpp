@@ -16,7 +16,7 @@
 /// What elements make of them is in core/solids/elements.hpp.
 #pragma once
 
-#include "core/solids/shapes.hpp"
+#include "core/mesh/shapes.hpp"
 #include "core/solids/tensor.hpp"
 
 namespace stickslip {

@@ -7,6 +7,7 @@
 
 #include "core/algebra/scalar.hpp"
 #include "core/mesh/mesh.hpp"
+#include "core/mesh/shapes.hpp"
 
 namespace stickslip {
 
@@ -45,16 +46,56 @@ inline const std::vector<EdgePoint>& edge_quadrature(int nodes, bool of_revoluti
 
 namespace detail {
 
-/// Shape functions of a face at one point of its quadrature, nodes counter-clockwise, and their derivatives along two
-/// directions.
+/// Shape functions of a face at one point of its quadrature, nodes counter-clockwise, corners first (sides_of of
+/// core/mesh/mesh.hpp), and their derivatives along two directions.
 struct FacePoint {
   double weight;
-  std::array<double, 4> value, along, across;
+  std::array<double, 9> value, along, across;
 };
 
-/// As many points as make the shares of a flat parallelogram exact.
+/// What a plane shape has at a point of it.
+template <int nodes>
+FacePoint face_point(const ShapePoint<nodes>& at) {
+  FacePoint point{at.weight, {}, {}, {}};
+  for (int a = 0; a < nodes; ++a) {
+    point.value[a] = at.value[a];
+    point.along[a] = at.gradient(0, a);
+    point.across[a] = at.gradient(1, a);
+  }
+  return point;
+}
+
+/// A face of nine nodes: that of a hexahedron of twenty-seven at z = -1, seen from above.
+inline FacePoint point_of_nine_nodes(double x, double y, double weight) {
+  static constexpr int node[9] = {0, 1, 2, 3, 8, 9, 10, 11, 24};
+  FacePoint point{weight, {}, {}, {}};
+  for (int a = 0; a < 9; ++a) {
+    const auto& at = hexahedron[node[a]];
+    point.value[a] = parabola(at[0], x) * parabola(at[1], y);
+    point.along[a] = slope_of_parabola(at[0], x) * parabola(at[1], y);
+    point.across[a] = parabola(at[0], x) * slope_of_parabola(at[1], y);
+  }
+  return point;
+}
+
+/// Six points of a triangle, exact for polynomials of degree 4 (D. A. Dunavant, Int. J. Numer. Meth. Engng. 21 (1985)
+/// 1129; coordinates and weights in closed form).
+inline std::vector<FacePoint> six_points() {
+  std::vector<FacePoint> points;
+  const double ten = std::sqrt(10.0);
+  for (const int sign : {-1, 1}) {
+    const double a = (8 - ten + sign * std::sqrt(38 - 44 * std::sqrt(0.4))) / 18, b = 1 - 2 * a;
+    const double weight = (620 + sign * std::sqrt(213125 - 53320 * ten)) / 7440;
+    for (const auto& [x, y] : {std::pair{a, a}, {b, a}, {a, b}}) points.push_back(face_point(Tri6::at(x, y, weight)));
+  }
+  return points;
+}
+
+/// As many points as make the shares of a flat parallelogram exact, and of a quadratic face, curved or not, the vector
+/// of each node: degree 4 in a triangle, 5 along each side of a quadrilateral.
 inline const std::vector<FacePoint>& face_quadrature(int nodes) {
-  static const std::vector<FacePoint> triangle{{0.5, {1.0 / 3, 1.0 / 3, 1.0 / 3, 0}, {-1, 1, 0, 0}, {-1, 0, 1, 0}}};
+  static const std::vector<FacePoint> triangle{{0.5, {1.0 / 3, 1.0 / 3, 1.0 / 3}, {-1, 1}, {-1, 0, 1}}},
+      triangle6 = six_points();
   static const std::vector<FacePoint> quadrilateral = [] {
     static constexpr double sx[4] = {-1, 1, 1, -1}, sy[4] = {-1, -1, 1, 1};
     std::vector<FacePoint> points;
@@ -70,7 +111,30 @@ inline const std::vector<FacePoint>& face_quadrature(int nodes) {
     }
     return points;
   }();
-  return nodes == 3 ? triangle : quadrilateral;
+  static const std::vector<FacePoint> quadrilateral8 = [] {
+    std::vector<FacePoint> points;
+    for (const auto& point : Quad8::quadrature()) points.push_back(face_point(point));
+    return points;
+  }();
+  static const std::vector<FacePoint> quadrilateral9 = [] {
+    std::vector<FacePoint> points;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        points.push_back(point_of_nine_nodes(gauss_at[i], gauss_at[j], gauss_weight[i] * gauss_weight[j]));
+    return points;
+  }();
+  switch (nodes) {
+    case 3:
+      return triangle;
+    case 6:
+      return triangle6;
+    case 8:
+      return quadrilateral8;
+    case 9:
+      return quadrilateral9;
+    default:
+      return quadrilateral;
+  }
 }
 
 template <class T>
@@ -119,7 +183,8 @@ void for_each_face_point(const Points<T>& points, const std::vector<int>& face, 
 }  // namespace detail
 
 /// Calls f(values, outward, area) at each quadrature point of a side of an element: in the plane an edge (its two ends,
-/// and its middle where it is quadratic), in space a face (its corners counter-clockwise seen from outside).
+/// and its middle where it is quadratic), in space a face (its corners counter-clockwise seen from outside, and its
+/// middles where it is quadratic).
 ///
 ///   values   of the shape functions N_a
 ///   outward  the vector area of the point, out of the element
@@ -134,12 +199,15 @@ void for_each_side_point(const Points<T>& points, const std::vector<int>& side, 
     detail::for_each_edge_point(points, side, depth, f);
 }
 
-/// Tributary areas of the nodes of a side of an element.
+/// Consistent shares of the nodes of a side of an element in its area, one a node.
 template <class T>
-std::array<T, 4> side_shares(const Points<T>& points, const std::vector<int>& side, const Depth<T>& depth) {
-  std::array<T, 4> shares{T(0), T(0), T(0), T(0)};
+Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 9, 1> side_shares(const Points<T>& points, const std::vector<int>& side,
+                                                         const Depth<T>& depth) {
+  using Shares = Eigen::Matrix<T, Eigen::Dynamic, 1, 0, 9, 1>;
+  const auto count = static_cast<Eigen::Index>(side.size());
+  Shares shares = Shares::Constant(count, T(0));
   for_each_side_point(points, side, depth, [&](const auto& values, const auto&, const T& area) {
-    for (std::size_t a = 0; a < side.size(); ++a) shares[a] += T(values[a]) * area;
+    for (Eigen::Index a = 0; a < count; ++a) shares[a] += T(values[static_cast<std::size_t>(a)]) * area;
   });
   return shares;
 }

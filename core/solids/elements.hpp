@@ -41,6 +41,13 @@ class ElementMemory {
 template <class Shape>
 inline constexpr int dofs_of = Shape::dimension* Shape::nodes;
 
+/// A square matrix of an element, on the heap if it is larger than Eigen leaves on the stack: of hexahedra with middles
+/// and their derivatives.
+template <class T, int n>
+inline constexpr int size_in_element = sizeof(T) * n* n <= EIGEN_STACK_ALLOCATION_LIMIT ? n : Eigen::Dynamic;
+template <class T, int n>
+using ElementMatrix = Eigen::Matrix<T, size_in_element<T, n>, size_in_element<T, n>>;
+
 /// Numbers that a law remembers at a point of an element of these kinematics; 0: it does not remember.
 template <class Law, Kinematics kinematics>
 constexpr int memory_at() {
@@ -199,15 +206,17 @@ Mat<T, dofs_of<Shape>> averaged_tangent(const Law& law, const Nodal<T, Shape>& c
 
 /// Tangent, dofs x dofs, node-major. `before`: the memory that a law which remembers flows from.
 template <class T, class Shape, Kinematics kinematics = plain_kinematics<Shape>, class Law>
-Mat<T, dofs_of<Shape>> element_tangent(const Law& law, const Nodal<T, Shape>& coordinates, const Nodal<T, Shape>& u,
-                                       const T& depth = T(1), ElementMemory<T> before = {}) {
+ElementMatrix<T, dofs_of<Shape>> element_tangent(const Law& law, const Nodal<T, Shape>& coordinates,
+                                                 const Nodal<T, Shape>& u, const T& depth = T(1),
+                                                 ElementMemory<T> before = {}) {
   constexpr int n = Shape::nodes, D = Shape::dimension;
   if constexpr (detail::averages<Law, kinematics>())
     if (law.is_finite) return detail::averaged_tangent<T, Shape, kinematics>(law, coordinates, u, depth, before);
   using Stress = Tensor<T, layout_of(kinematics)>;
   // Derivatives of a symmetric tangent are dear, so they are made of its lower blocks alone.
   constexpr bool mirrors = tells_constants<T>;
-  Mat<T, D* n> K = Mat<T, D * n>::Constant(T(0));
+  using Tangent = ElementMatrix<T, D * n>;
+  Tangent K = Tangent::Constant(D * n, D * n, T(0));
   Mat<T, Stress::size> at_unit_volume;
   if constexpr (detail::IsLinear<Law>)
     at_unit_volume = detail::material_tangent(law, Stress::constant(T(0)), T(1), before);

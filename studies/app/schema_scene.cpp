@@ -60,7 +60,7 @@ const char* const scene = R"json({
         "material": {"description": "what it is made of", "$ref": "#/$defs/material",
           "examples": [{"linear_elastic": {"E": 1000, "nu": 0.3}}]},
         "element": {"description": "Default: Q4 (space: H8); mean dilatation for j2_plastic, also good for nu near 1/2; gmsh: the file's",
-          "enum": ["Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "H8", "H8_mean_dilatation", "T4", "bar", "point"], "examples": ["Q8"]},
+          "enum": ["Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "H8", "H8_mean_dilatation", "H20", "H27", "T4", "T10", "bar", "point"], "examples": ["Q8"]},
         "thickness": {"description": "of a body of plane_strain or plane_stress, at the start (length)",
           "$ref": "#/$defs/positive", "default": 1, "examples": [0.5]},
         "area": {"description": "cross-section of bars (length squared)", "$ref": "#/$defs/positive", "default": 1,

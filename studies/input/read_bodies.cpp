@@ -169,10 +169,10 @@ void read_body(const std::string& name, const JsonNode& node, SceneReading& read
   Body body;
   body.name = name;
   if (const auto element = node.find("element")) {
-    body.element =
-        element
-            ->choice({"Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "H8", "H8_mean_dilatation", "T4", "bar", "point"})
-            .value_or("");
+    body.element = element
+                       ->choice({"Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "H8", "H8_mean_dilatation", "H20", "H27",
+                                 "T4", "T10", "bar", "point"})
+                       .value_or("");
   }
   const auto mesh_node = node.find("mesh");
   const auto mesh = mesh_node ? read_mesh(*mesh_node, reading) : std::nullopt;

@@ -35,8 +35,11 @@ std::string in_words(double bytes) {
 }  // namespace
 
 double estimated_nodes(const MeshDescription& mesh, const std::string& element) {
-  // nodes a cell: its corner and, where the sides are curved, their middles; T6 has the diagonal's too
-  const double each = element == "Q8" ? 3 : element == "T6" ? 4 : 1;
+  // nodes a cell: its corner and, where the sides are curved, their middles; T6 and T10 have those of diagonals too
+  const double each = element == "Q8"                        ? 3
+                      : element == "T6" || element == "H20"  ? 4
+                      : element == "T10" || element == "H27" ? 8
+                                                             : 1;
   return std::visit(
       [&]<class M>(const M& kind) -> double {
         if constexpr (std::is_same_v<M, ImportedMesh>)

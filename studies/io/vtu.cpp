@@ -36,6 +36,12 @@ int points_of(VtuCell cell) {
       return 4;
     case VtuCell::hexahedron:
       return 8;
+    case VtuCell::tetra10:
+      return 10;
+    case VtuCell::hexahedron20:
+      return 20;
+    case VtuCell::hexahedron27:
+      return 27;
   }
   throw std::invalid_argument("vtu: unknown kind of cell");
 }
@@ -58,6 +64,12 @@ VtuCell cell_of(ElementShape shape) {
       return VtuCell::tetra;
     case ElementShape::hex8:
       return VtuCell::hexahedron;
+    case ElementShape::tet10:
+      return VtuCell::tetra10;
+    case ElementShape::hex20:
+      return VtuCell::hexahedron20;
+    case ElementShape::hex27:
+      return VtuCell::hexahedron27;
   }
   throw std::invalid_argument("vtu: an element shape without a cell");
 }

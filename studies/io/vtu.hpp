@@ -19,7 +19,10 @@ enum class VtuCell : unsigned char {
   tetra = 10,
   hexahedron = 12,
   triangle6 = 22,
-  quad8 = 23
+  quad8 = 23,
+  tetra10 = 24,
+  hexahedron20 = 25,
+  hexahedron27 = 29
 };
 
 /// One field: a column of `values` for each point or cell. 1 row is a scalar, 2 or 3 a vector (2 is padded with a zero

@@ -28,13 +28,14 @@ std::optional<Point> seen(const json& value) {
 }
 
 /// Nodes of an element in the order of its outline. Quadratic elements list corners first, then the middles of the
-/// sides in turn.
+/// sides in turn, faces in space perhaps a node within.
 std::vector<int> outline(const std::vector<int>& nodes) {
-  if (nodes.size() != 6 && nodes.size() != 8) return nodes;
+  if (nodes.size() < 6) return nodes;
   std::vector<int> out;
-  for (std::size_t i = 0; i < nodes.size() / 2; ++i) {
+  const std::size_t corners = nodes.size() / 2;
+  for (std::size_t i = 0; i < corners; ++i) {
     out.push_back(nodes[i]);
-    out.push_back(nodes[nodes.size() / 2 + i]);
+    out.push_back(nodes[corners + i]);
   }
   return out;
 }

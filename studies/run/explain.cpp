@@ -38,6 +38,12 @@ const char* shape_name(ElementShape shape) {
       return "T4 tetrahedron";
     case ElementShape::hex8:
       return "H8 hexahedron";
+    case ElementShape::tet10:
+      return "T10 tetrahedron";
+    case ElementShape::hex20:
+      return "H20 hexahedron";
+    case ElementShape::hex27:
+      return "H27 hexahedron";
   }
   return "";
 }

@@ -20,7 +20,7 @@ bool may_lock(const Problem& problem, std::size_t b) {
   const auto& body = problem.model.bodies[b];
   const ElementShape shape = body.mesh.shape;
   return problem.model.scene.space != Space::plane_stress && !has_mean_dilatation(body.kinematics) &&
-         (shape == ElementShape::quad4 || shape == ElementShape::tri3 || is_solid(shape));
+         (shape == ElementShape::quad4 || shape == ElementShape::tri3 || (is_solid(shape) && !is_quadratic(shape)));
 }
 
 /// An element that may lock, by its name, and what to take in its place.
@@ -34,9 +34,9 @@ Locking locking_of(ElementShape shape) {
     case ElementShape::tri3:
       return {"T3", "element T6"};
     case ElementShape::hex8:
-      return {"H8", "element H8_mean_dilatation"};
+      return {"H8", "element H8_mean_dilatation or H20"};
     default:
-      return {"T4", "element H8_mean_dilatation"};
+      return {"T4", "element H8_mean_dilatation or T10"};
   }
 }
 

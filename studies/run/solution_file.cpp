@@ -69,6 +69,12 @@ std::string_view element_name(const BodyMesh& body) {
       return "T4";
     case ElementShape::hex8:
       return has_mean_dilatation(body.kinematics) ? "H8_mean_dilatation" : "H8";
+    case ElementShape::tet10:
+      return "T10";
+    case ElementShape::hex20:
+      return "H20";
+    case ElementShape::hex27:
+      return "H27";
   }
   return "";
 }

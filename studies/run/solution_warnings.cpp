@@ -6,8 +6,8 @@
 #include <limits>
 #include <span>
 
+#include "core/mesh/shapes.hpp"
 #include "core/model/element_nodes.hpp"
-#include "core/solids/shapes.hpp"
 #include "methods/newton/residuals.hpp"
 #include "methods/stepping/checkpoints.hpp"
 #include "methods/stepping/diagnosis.hpp"

@@ -25,12 +25,13 @@ class Contact {
         segment(is_integrated(scene, given, sides)),
         scene_(scene),
         body_(scene.body(sides.at("slave"))),
-        side_(scene.side(sides.at("slave"))),
+        side_(cut_at_middles(scene.side(sides.at("slave")))),
         master_(scene, given, sides.at("slave"), sides.at("master"), segment),
         facets_(body_.in_space() ? Facets{} : facets_of(side_)),
         areas_(areas_of(scene, body_, side_)) {
     if (body_.in_space() && !master_.rigid())
-      faces_.emplace(scene.points, scene.side(sides.at("master")).edges, master_.smooth, master_.corner, scene.finite);
+      faces_.emplace(scene.points, cut_at_middles(scene.side(sides.at("master"))).edges, master_.smooth, master_.corner,
+                     scene.finite);
     for (auto& [node, area] : areas_)
       if (side_.edges.empty() && body_.element == "bar") area = body_.area();
     std::map<int, Vec3> before;

@@ -92,9 +92,12 @@ struct Motion {
 
 /// An element in natural coordinates, 0 <= r, s, t <= 1, of triangles and tetrahedra r + s + t <= 1 too.
 struct Reference {
-  Field nodes = {};  ///< corners, counter-clockwise, then the middles of the sides in turn; in space t = 0 first
-  std::vector<Nodes> sides = {};  ///< edges: two ends, and a middle; in space faces, counter-clockwise from outside
-  /// Gauss points of full rank: the first nodes and then the middle, drawn to the middle.
+  /// Corners, counter-clockwise, then the middles of the sides in turn; in space t = 0 first, the middles of edges in
+  /// the order of VTK, then those of faces, and one.
+  Field nodes = {};
+  /// Edges: two ends, and a middle; in space faces, counter-clockwise from outside, their middles after their corners.
+  std::vector<Nodes> sides = {};
+  /// Gauss points of full rank: the first nodes (H20: of H27) and then the middle, drawn to the middle.
   double drawn = 0;
   Eigen::VectorXd weights = {};
 };
@@ -103,11 +106,21 @@ struct Reference {
 inline const Reference& reference(const std::string& element) {
   static const Field line{{0, 1, 0.5}, {0, 0, 0}, {0, 0, 0}},
       triangle{{0, 1, 0, 0.5, 0.5, 0}, {0, 0, 1, 0, 0.5, 0.5}, {0, 0, 0, 0, 0, 0}},
-      square{{0, 1, 1, 0, 0.5, 1, 0.5, 0}, {0, 0, 1, 1, 0, 0.5, 1, 0.5}, {0, 0, 0, 0, 0, 0, 0, 0}},
-      tetrahedron{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
-      cube{{0, 1, 1, 0, 0, 1, 1, 0}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}};
+      square{{0, 1, 1, 0, 0.5, 1, 0.5, 0, 0.5}, {0, 0, 1, 1, 0, 0.5, 1, 0.5, 0.5}, {0, 0, 0, 0, 0, 0, 0, 0, 0}},
+      tetrahedron{{0, 1, 0, 0, 0.5, 0.5, 0, 0, 0.5, 0},
+                  {0, 0, 1, 0, 0, 0.5, 0.5, 0, 0, 0.5},
+                  {0, 0, 0, 1, 0, 0, 0, 0.5, 0.5, 0.5}},
+      cube{{0, 1, 1, 0, 0, 1, 1, 0, .5, 1, .5, 0, .5, 1, .5, 0, 0, 1, 1, 0, 0, 1, .5, .5, .5, .5, .5},
+           {0, 0, 1, 1, 0, 0, 1, 1, 0, .5, 1, .5, 0, .5, 1, .5, 0, 0, 1, 1, .5, .5, 0, 1, .5, .5, .5},
+           {0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1, .5, .5, .5, .5, .5, .5, .5, .5, 0, 1, .5}};
   static const double two = 1 / std::sqrt(3.0), three = std::sqrt(0.6);  // points each way
   const auto same = [](int n, double volume) { return Eigen::VectorXd::Constant(n, volume / n); };
+  static const Eigen::VectorXd nine = Eigen::VectorXd{{25, 25, 25, 25, 40, 40, 40, 40, 64}} / 324;
+  static const Eigen::VectorXd twenty_seven =
+      (Eigen::VectorXd(27) << Eigen::VectorXd::Constant(8, 125), Eigen::VectorXd::Constant(12, 200),
+       Eigen::VectorXd::Constant(6, 320), 512)
+          .finished() /
+      5832;
   static const std::map<std::string, Reference> all{
       {"point", {line.leftCols(2)}},
       {"bar", {line.leftCols(2)}},
@@ -116,14 +129,39 @@ inline const Reference& reference(const std::string& element) {
       {"T3", {triangle.leftCols(3), {{0, 1}, {1, 2}, {2, 0}}, 0.5, same(3, 0.5)}},
       {"T6", {triangle, {{0, 1, 3}, {1, 2, 4}, {2, 0, 5}}, 0.5, same(3, 0.5)}},
       {"Q4", {square.leftCols(4), {{0, 1}, {1, 2}, {2, 3}, {3, 0}}, two, same(4, 1)}},
-      {"Q8",
-       {square,
-        {{0, 1, 4}, {1, 2, 5}, {2, 3, 6}, {3, 0, 7}},
-        three,
-        Eigen::VectorXd{{25, 25, 25, 25, 40, 40, 40, 40, 64}} / 324}},
-      {"T4", {tetrahedron, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}, 0, same(1, 1.0 / 6)}},
+      {"Q8", {square.leftCols(8), {{0, 1, 4}, {1, 2, 5}, {2, 3, 6}, {3, 0, 7}}, three, nine}},
+      {"Q9", {square, {}, three, nine}},
+      {"T4", {tetrahedron.leftCols(4), {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}, 0, same(1, 1.0 / 6)}},
+      {"T10",
+       {tetrahedron,
+        {{0, 2, 1, 6, 5, 4}, {0, 1, 3, 4, 8, 7}, {1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}},
+        std::sqrt(0.2),
+        same(4, 1.0 / 6)}},
       {"H8",
-       {cube, {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}, two, same(8, 1)}}};
+       {cube.leftCols(8),
+        {{3, 2, 1, 0}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
+        two,
+        same(8, 1)}},
+      {"H20",
+       {cube.leftCols(20),
+        {{3, 2, 1, 0, 10, 9, 8, 11},
+         {4, 5, 6, 7, 12, 13, 14, 15},
+         {0, 1, 5, 4, 8, 17, 12, 16},
+         {1, 2, 6, 5, 9, 18, 13, 17},
+         {2, 3, 7, 6, 10, 19, 14, 18},
+         {3, 0, 4, 7, 11, 16, 15, 19}},
+        three,
+        twenty_seven}},
+      {"H27",
+       {cube,
+        {{3, 2, 1, 0, 10, 9, 8, 11, 24},
+         {4, 5, 6, 7, 12, 13, 14, 15, 25},
+         {0, 1, 5, 4, 8, 17, 12, 16, 22},
+         {1, 2, 6, 5, 9, 18, 13, 17, 21},
+         {2, 3, 7, 6, 10, 19, 14, 18, 23},
+         {3, 0, 4, 7, 11, 16, 15, 19, 20}},
+        three,
+        twenty_seven}}};
   static const Reference none;
   const bool averages = element == "Q4_mean_dilatation" || element == "H8_mean_dilatation";
   const auto found = all.find(averages ? element.substr(0, 2) : element);
@@ -136,7 +174,7 @@ struct Body {
   std::vector<Nodes> elements;
   std::map<std::string, Nodes> sides;
   std::vector<Nodes> edges = {};  ///< of the boundary, as sides of a Reference
-  bool in_space() const { return element.starts_with("H8") || element == "T4"; }
+  bool in_space() const { return element.starts_with("H") || element == "T4" || element == "T10"; }
   bool averages() const { return element.ends_with("mean_dilatation"); }
   bool quadratic() const { return element == "Q8" || element == "T6"; }
   bool spring() const { return element == "point"; }
@@ -187,6 +225,24 @@ struct Side {
   std::vector<Nodes> edges;
   bool has(int node) const { return nodes.contains(node); }
 };
+
+/// The side with each face that has middles cut at them, as contact sees it: into four faces of as many corners; one of
+/// eight nodes, which has none within, into a triangle at each corner and the quadrilateral between them.
+inline Side cut_at_middles(Side side) {
+  std::vector<Nodes> facets;
+  for (const auto& face : side.edges) {
+    const auto count = face.size(), corners = count == 6 ? 3ul : 4ul;
+    for (std::size_t k = 0; k < corners && count > 4; ++k) {
+      Nodes facet{face[k], face[corners + k], face[corners + (k + corners - 1) % corners]};
+      if (count == 9) facet.insert(facet.begin() + 2, face[8]);
+      facets.push_back(facet);
+    }
+    if (count <= 4) facets.push_back(face);
+    if (count == 6 || count == 8) facets.emplace_back(face.begin() + static_cast<std::ptrdiff_t>(corners), face.end());
+  }
+  side.edges = facets;
+  return side;
+}
 
 /// An edge of a side in the plane, or half of one that has a middle: x(s) = (1 - s) x_a + s x_b, and of a half in
 /// addition s (1 - s) (x_middle - (x_start + x_end) / 2).

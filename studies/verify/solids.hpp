@@ -165,8 +165,11 @@ struct Point : Particle {
 
 /// The polynomials r^a s^b t^c of an element at a place, and their derivatives by r, s and t.
 inline Eigen::Matrix4Xd polynomials(const Field& nodes, const Vec3& at) {
-  Eigen::Array3Xd p = nodes.array() * ((nodes.array() == 0.5).any() ? 2 : 1);
-  if (p.cols() == 8 && p(0, 2) == 2) p.col(2) /= 2;  // Q8: r s in place of r^2 s^2
+  const bool has_middles = (nodes.array() == 0.5).any();
+  Eigen::Array3Xd p = nodes.array() * (has_middles ? 2 : 1);
+  const bool is_serendipity = has_middles && (p.cols() == 8 || p.cols() == 20);
+  for (Eigen::Index a = 0; a < p.cols() && is_serendipity; ++a)  // one square at most: r s in place of r^2 s^2
+    if ((p.col(a) == 2).count() > 1) p.col(a) = (p.col(a) > 0).select(3 - p.col(a), 0);
   const Eigen::Array3Xd places = at.array().replicate(1, p.cols()), power = places.pow(p),
                         slope = p * places.pow((p - 1).max(0));
   Eigen::Matrix4Xd rows(4, p.cols());
@@ -192,8 +195,9 @@ inline const std::vector<Shape>& gauss_points(const std::string& element, bool o
   const Vec3 middle = nodes.rowwise().mean();
   const bool one = !of_revolution && (element == "T3" || element == "L2");  // gradients are constant
   for (Eigen::Index k = 0; k < (one ? 1 : weights.size()); ++k) {
-    const bool is_middle = one || k == nodes.cols();
-    points.push_back(shape(element, is_middle ? middle : Vec3(middle + drawn * (nodes.col(k) - middle))));
+    const bool is_middle = one || (k == nodes.cols() && element != "H20");
+    const Field& from = element == "H20" ? reference("H27").nodes : nodes;
+    points.push_back(shape(element, is_middle ? middle : Vec3(middle + drawn * (from.col(k) - middle))));
     points.back().weight = one ? weights.sum() : weights[k];
   }
   return points;
@@ -309,14 +313,29 @@ struct Bodies {
 
 // --- loads -----------------------------------------------------------------------------------------------------------
 
+/// Points of a side of an element by its number of nodes, exact for what a face has.
+inline const std::vector<Shape>& side_points(bool in_space, std::size_t nodes, bool of_revolution) {
+  if (!in_space) return gauss_points(nodes == 3 ? "L3" : "L2", of_revolution);
+  if (nodes != 6) return gauss_points(nodes == 3 ? "T3" : nodes == 4 ? "Q4" : nodes == 8 ? "Q8" : "Q9");
+  static const std::vector<Shape> triangle = [] {  // those of a square, one of whose sides is drawn into a corner
+    std::vector<Shape> points;
+    for (const auto& of_square : gauss_points("Q8")) {
+      const double r = of_square.at[0], s = of_square.at[1];
+      points.push_back(shape("T6", Vec3(r, s * (1 - r), 0)));
+      points.back().weight = of_square.weight * (1 - r);
+    }
+    return points;
+  }();
+  return triangle;
+}
+
 /// Integrates over a side, of edges or faces at `places`: adds up, at each of its nodes, a weight times N, and the
 /// vector area out of the body that it stands for; of an edge, at a place of it.
 template <class F>
 void over_side(const Scene& scene, const Body& body, const Side& side, const Field& places, F&& add) {
   for (const auto& edge : side.edges) {
-    const std::string kind = body.in_space() ? (edge.size() == 3 ? "T3" : "Q4") : (edge.size() == 3 ? "L3" : "L2");
     const Field at = places(Eigen::all, edge);
-    for (const auto& point : gauss_points(kind, scene.axisymmetric)) {
+    for (const auto& point : side_points(body.in_space(), edge.size(), scene.axisymmetric)) {
       const Vec3 tau = at * point.gradient.col(0), across = at * point.gradient.col(1);
       const Vec3 outward = body.in_space() ? tau.cross(across) : Vec3(tau[1], -tau[0], tau[2]);
       const double width = point.weight * scene.depth(body, at.row(0).dot(point.value));

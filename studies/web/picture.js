@@ -197,7 +197,7 @@ const Picture = (() => {
     const group = element('g', {class: 'bodies'}), most = Math.max(...picture.von_mises.map((s) => s ?? 0));
     let path = null, shade_of_path = null;  // elements of one shade that follow one another: the nearest comes last
     picture.elements.forEach((nodes, e) => {
-      const corners = {8: 4, 6: 3}[nodes.length] ?? nodes.length, at = nodes.slice(0, corners).map((n) => places[n]);
+      const corners = {9: 4, 8: 4, 6: 3}[nodes.length] ?? nodes.length, at = nodes.slice(0, corners).map((n) => places[n]);
       if (corners === 2) {
         const same = picture.points[nodes[0]].every((x, k) => x === picture.points[nodes[1]][k]);
         if (!same) {

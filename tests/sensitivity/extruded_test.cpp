@@ -410,6 +410,14 @@ TEST(SolidBodies, ThatTurnTogetherKeepWhatTheyBearWhereTheyTouch) {
   }
 }
 
+/// Few steps and parameters: the oracle runs each in complex numbers.
+Scene few_steps(Scene s) {
+  s.legs = {{1, 1}, {2, 1}};
+  std::erase_if(s.parameters,
+                [](const Parameter& p) { return p.name == "down" || p.name == "E" || p.name == "depth"; });
+  return s;
+}
+
 TEST(SolidBodies, HaveTheDerivativesOfTheOracleInBothModes) {
   const NeoHookean rubber{1000.0, 0.3};
   for (const Method& method : scenes::finite_schemes()) {
@@ -422,17 +430,14 @@ TEST(SolidBodies, HaveTheDerivativesOfTheOracleInBothModes) {
   const MonolithicAL monolithic;
   scenes::expect_derivatives_in_both_modes(twisted_block(rubber, true, "H8_mean_dilatation"), monolithic);
   scenes::expect_derivatives_in_both_modes(twisted_block(rubber, true, "T4"), monolithic);
+  for (const char* element : {"T10", "H20", "H27"})
+    scenes::expect_derivatives_in_both_modes(few_steps(twisted_block(rubber, true, element)), monolithic);
+  scenes::expect_derivatives_in_both_modes(few_steps(twisted_block(metal, false, "T10")), monolithic);
+  scenes::expect_derivatives_in_both_modes(few_steps(block_on_block("T10")), monolithic);
+  scenes::expect_derivatives_in_both_modes(few_steps(block_on_block("H20")), monolithic);
   scenes::expect_derivatives_in_both_modes(block_on_block("T4"), monolithic);
   scenes::expect_derivatives_in_both_modes(twisted_block(metal, false), monolithic);
   scenes::expect_derivatives_in_both_modes(twisted_block(metal, true), monolithic);
-}
-
-/// Few steps and parameters: the oracle runs each in complex numbers.
-Scene few_steps(Scene s) {
-  s.legs = {{1, 1}, {2, 1}};
-  std::erase_if(s.parameters,
-                [](const Parameter& p) { return p.name == "down" || p.name == "E" || p.name == "depth"; });
-  return s;
 }
 
 TEST(SolidBodies, ThatSlideOverOneAnotherHaveTheDerivativesOfTheOracle) {
@@ -445,6 +450,7 @@ TEST(SolidBodies, ThatSlideOverSplinesAndTrianglesHaveTheDerivativesOfTheOracle)
   const MonolithicAL monolithic;
   scenes::expect_derivatives_in_both_modes(few_steps(sliding_blocks(Smoothing::b_spline)), monolithic);
   scenes::expect_derivatives_in_both_modes(few_steps(sliding_blocks(Smoothing::catmull_rom, "T4")), monolithic);
+  scenes::expect_derivatives_in_both_modes(few_steps(sliding_blocks(Smoothing::catmull_rom, "T10")), monolithic);
 }
 
 }  // namespace

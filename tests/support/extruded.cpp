@@ -36,6 +36,7 @@ Scene extruded(Scene scene) {
     body.mesh = drawn_out(body.mesh, body.thickness);
     body.thickness = 1.0;
     if (body.element == "Q4") body.element = "H8";
+    if (body.element == "Q8") body.element = "H20";
     if (body.element == "Q4_mean_dilatation") body.element = "H8_mean_dilatation";
     for (const char* end : {".front", ".back"}) scene.supports.push_back({body.name + end, {{'z', Table{{{0, 0.0}}}}}});
   }

@@ -6,7 +6,7 @@
 namespace stickslip::scenes {
 
 /// The scene in space. Moments and half widths, which are asked of the plane alone, are left out.
-/// pre: plane strain, bodies of generated meshes and quadrilaterals of four nodes, masters that are obstacles but no
+/// pre: plane strain, bodies of generated meshes and quadrilaterals, masters that are obstacles but no
 /// polylines.
 Scene extruded(Scene scene);
 

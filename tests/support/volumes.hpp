@@ -45,11 +45,11 @@ inline double worst_corner_in_space(const Mesh& mesh, const Points<double>& poin
   using Corners = std::vector<std::array<int, 3>>;
   static const Corners tetrahedron{{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}},
       hexahedron{{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
-  const Corners& neighbours = mesh.shape == ElementShape::tet4 ? tetrahedron : hexahedron;
+  const Corners& neighbours = linear_shape(mesh.shape) == ElementShape::tet4 ? tetrahedron : hexahedron;
   const int count = nodes_of(mesh.shape);
   double worst = 1;
   for (int e = 0; e < mesh.element_count(); ++e)
-    for (int corner = 0; corner < count; ++corner) {
+    for (int corner = 0; corner < corners_of(mesh.shape); ++corner) {
       const auto at = [&](int a) -> Vec<double, 3> { return points.col(mesh.connectivity[e * count + a]); };
       Mat<double, 3> edges;
       for (int k = 0; k < 3; ++k) edges.col(k) = (at(neighbours[corner][k]) - at(corner)).normalized();

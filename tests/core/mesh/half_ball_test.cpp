@@ -158,7 +158,7 @@ TEST(HalfBall, ThatMakesNoMeshIsRefusedWithAReason) {
         << mesh_fault(ball, element, dimension);
   };
   expect_fault(half_ball(4, 4, 1), "", 2, "needs the space solid");
-  expect_fault(half_ball(4, 4, 1), "Q4", 3, "H8, H8_mean_dilatation or T4, not Q4");
+  expect_fault(half_ball(4, 4, 1), "Q4", 3, "H8, H8_mean_dilatation, H20, H27, T4 or T10, not Q4");
   expect_fault(half_ball(1, 1, 1), "", 3, "at least 2");
   expect_fault(half_ball(4, 7, 1), "", 3, "factor 1.5");
   expect_fault(half_ball(4, 4, 0), "", 3, "grade must be greater than 0");

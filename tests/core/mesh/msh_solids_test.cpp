@@ -149,7 +149,8 @@ TEST(MshSolids, SayWhereAndWhatIsWrong) {
       {"12 2 1 1", "12 1.2 0.2 0.2", "33:1", "element 6 of body \"block\" is degenerate: a corner is flat or turns"},
       {"9 2 0 1", "9 2 0 inf", "21:7", "not finite"},
       {six, "6 6 2 3 1 2 3 6 8 9 12", "33:3", "type 6 (6-node prism), which is not read; plane bodies of 3- or"},
-      {six, "6 11 2 3 1 2 3 6 8 9 12 1 1 1 1", "33:3", "bodies in space of 4-node tetrahedra or 8-node hexahedra"},
+      {six, "6 18 2 3 1 2 3 6 8 9 12 1 1 1 1", "33:3", "bodies in space of 4- or 10-node tetrahedra or 8-, 20- or 27-"},
+      {six, "6 11 2 3 1 2 3 6 8 9 12 1 1 1 1", "33:1", "body \"block\" mixes elements of unlike kinds, from element 6"},
       {"$Elements\n6", "$Elements\n7\n7 5 2 3 1 2 5 4 1 8 11 10 7", "33:1",
        "element 5 of body \"block\" has the same nodes as element 7 of line 28"},
       {"$Elements\n6", "$Elements\n7\n7 5 2 3 1 1 3 6 4 7 9 12 10", "33:1",
@@ -244,6 +245,193 @@ TEST(MshSolids, SurviveAFileCutOffAnywhereAndAnyFlippedBit) {
       EXPECT_FALSE(first_inverted_element(body.mesh, body.points)) << "byte " << at;
   }
   EXPECT_GT(refused, static_cast<int>(cubes.size()) / 4);
+}
+
+// --- elements with middles -------------------------------------------------------------------------------------------
+
+/// Corners around each node after the corners, in the order of Gmsh's manual, "Node ordering".
+const std::vector<std::set<int>>& order_of_gmsh(ElementShape shape) {
+  static const std::vector<std::set<int>> tetrahedron{{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}};
+  static const std::vector<std::set<int>> edges{{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3},
+                                                {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}};
+  static const std::vector<std::set<int>> all = [] {
+    auto nodes = edges;
+    nodes.insert(
+        nodes.end(),
+        {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7}});
+    return nodes;
+  }();
+  return shape == ElementShape::tet10 ? tetrahedron : shape == ElementShape::hex20 ? edges : all;
+}
+
+/// A block of 2 x 1 x 1 cells that no plane bounds, of quadratic elements.
+ImportedMesh bent_block(const std::string& element) {
+  BoxMesh box;
+  box.min = {0.0, 0.0, 0.0};
+  box.max = {2.0, 1.0, 1.0};
+  box.cells = {2, 1, 1};
+  ImportedMesh block{"", "block", make_mesh(box, element, 3), {}, {}};
+  block.points = make_points<double>(box, block.mesh, {});
+  for (Eigen::Index n = 0; n < block.points.cols(); ++n) {
+    const Vec<double, 3> x = block.points.col(n);
+    block.points.col(n) += 0.0625 * Vec<double, 3>(x[1] * x[2], x[0] * x[0] - x[2], x[0] * x[1]);  // no digits are lost
+  }
+  return block;
+}
+
+std::string in_numbers(const std::vector<int>& nodes) {
+  std::string text;
+  for (const int node : nodes) text += " " + std::to_string(node + 1);
+  return text;
+}
+
+/// The block as Gmsh would write it, with its bottom, the edge from (0, 0, 0) along y, and its first corner.
+std::string written(const ImportedMesh& block, bool version_4) {
+  const ElementShape shape = block.mesh.shape;
+  const auto& around = corners_around(shape);
+  const int count = nodes_of(shape), corners = corners_of(shape);
+  std::ostringstream nodes, coordinates;
+  for (auto* to : {&nodes, &coordinates}) to->precision(17);
+  for (int n = 0; n < block.mesh.node_count; ++n) {
+    nodes << n + 1 << (version_4 ? "\n" : " ");
+    std::ostringstream& to = version_4 ? coordinates : nodes;
+    for (int i = 0; i < 3; ++i) to << block.points(i, n) << (i < 2 ? " " : "\n");
+  }
+  std::vector<std::string> solids, faces;
+  for (int e = 0; e < block.mesh.element_count(); ++e) {
+    const int* own = block.mesh.connectivity.data() + e * count;
+    std::vector<int> list(own, own + corners);
+    for (const auto& of : order_of_gmsh(shape))
+      for (int a = corners; a < count; ++a)
+        if (std::set<int>(around[a].begin(), around[a].end()) == of) list.push_back(own[a]);
+    EXPECT_EQ(static_cast<int>(list.size()), count);
+    solids.push_back(in_numbers(list));
+  }
+  for (const auto& face : block.mesh.sides.at("bottom").quadratic) faces.push_back(in_numbers(face));
+  const auto edge = evaluate_side(block.mesh, "left & bottom").nodes;  // ascending: two corners and a middle
+  const int solid = shape == ElementShape::tet10   ? 11
+                    : shape == ElementShape::hex20 ? 17
+                                                   : 12,
+            face = shape == ElementShape::tet10   ? 9
+                   : shape == ElementShape::hex20 ? 16
+                                                  : 10;
+  std::ostringstream text;
+  text << "$MeshFormat\n"
+       << (version_4 ? "4.1" : "2.2") << " 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n0 4 \"corner\"\n"
+       << "1 3 \"edge\"\n2 2 \"bottom\"\n3 1 \"block\"\n$EndPhysicalNames\n";
+  const auto total = solids.size() + faces.size() + 2;
+  if (version_4) {
+    text << "$Entities\n1 1 1 1\n1 0 0 0 1 4\n1 0 0 0 1 1 1 1 3 0\n1 0 0 0 1 1 1 1 2 0\n1 0 0 0 2 1 1 1 1 0\n"
+         << "$EndEntities\n$Nodes\n1 " << block.mesh.node_count << " 1 " << block.mesh.node_count << "\n3 1 0 "
+         << block.mesh.node_count << "\n"
+         << nodes.str() << coordinates.str() << "$EndNodes\n$Elements\n4 " << total << " 1 " << total << "\n";
+  } else {
+    text << "$Nodes\n" << block.mesh.node_count << "\n" << nodes.str() << "$EndNodes\n$Elements\n" << total << "\n";
+  }
+  int number = 0;
+  const auto write = [&](int dimension, int type, int group, const std::vector<std::string>& lists) {
+    if (version_4) text << dimension << " 1 " << type << " " << lists.size() << "\n";
+    for (const auto& list : lists) {
+      text << ++number;
+      if (!version_4) text << " " << type << " 2 " << group << " 1";
+      text << list << "\n";
+    }
+  };
+  write(0, 15, 4, {in_numbers({0})});
+  write(1, 8, 3, {in_numbers(edge)});
+  write(2, face, 2, faces);
+  write(3, solid, 1, solids);
+  text << "$EndElements\n";
+  return text.str();
+}
+
+TEST(MshSolids, OfElementsWithMiddlesHaveTheirNodesInGmshsOrder) {
+  for (const char* element : {"T10", "H20", "H27"}) {
+    const ImportedMesh block = bent_block(element);
+    for (bool version_4 : {false, true}) {
+      const ImportResult result = read(written(block, version_4));
+      ASSERT_TRUE(result.errors.empty()) << element << ": " << result.errors.front();
+      ASSERT_EQ(result.bodies.size(), 1u);
+      EXPECT_TRUE(result.notes.empty());
+      const ImportedMesh& found = result.bodies[0];
+      EXPECT_EQ(found.mesh.shape, block.mesh.shape);
+      EXPECT_EQ(found.mesh.connectivity, block.mesh.connectivity);
+      EXPECT_EQ(found.points, block.points);
+      EXPECT_EQ(mesh_fault(found, element, 3), "");
+      const Side &bottom = found.mesh.sides.at("bottom"), &expected = block.mesh.sides.at("bottom");
+      EXPECT_EQ(bottom.nodes, expected.nodes);
+      EXPECT_EQ(bottom.facets.size(), expected.facets.size());
+      ASSERT_EQ(bottom.quadratic.size(), expected.quadratic.size());
+      EXPECT_LE((vector_area(found.points, bottom) - vector_area(block.points, expected)).norm(), 1e-14);
+      EXPECT_EQ(found.mesh.sides.at("edge").nodes.size(), 3u);
+      EXPECT_EQ(found.mesh.sides.at("corner").nodes, std::vector<int>{0});
+    }
+  }
+}
+
+TEST(MshSolids, OfElementsWithMiddlesAreTurnedToTheRightHandWithTheirFaces) {
+  for (const char* element : {"T10", "H20", "H27"}) {
+    ImportedMesh mirrored = bent_block(element);
+    mirrored.points.row(0) *= -1;
+    const ImportResult result = read(written(mirrored, false));
+    ASSERT_TRUE(result.errors.empty()) << element << ": " << result.errors.front();
+    const ImportedMesh& found = result.bodies[0];
+    EXPECT_NEAR(volume(found.mesh, found.points), volume(bent_block(element).mesh, bent_block(element).points), 1e-12);
+    for (const auto& face : found.mesh.sides.at("bottom").quadratic)
+      EXPECT_LT(vector_area(found.points, {{}, {face}, {}})[2], 0);
+    for (const auto& facet : found.mesh.sides.at("bottom").facets)
+      EXPECT_LT(vector_area(found.points, {{}, {facet}, {}})[2], 0);
+  }
+}
+
+TEST(MshSolids, OfElementsWithMiddlesSplitOnTheirOwnCurves) {
+  for (const char* element : {"T10", "H20", "H27"}) {
+    const ImportedMesh coarse = read(written(bent_block(element), false)).bodies.at(0);
+    const ImportedMesh fine = split(coarse);
+    ASSERT_EQ(fine.mesh.element_count(), 8 * coarse.mesh.element_count());
+    ASSERT_EQ(fine.points.cols(), fine.mesh.node_count);
+    EXPECT_EQ(fine.points.leftCols(coarse.mesh.node_count), coarse.points);
+    EXPECT_FALSE(first_inverted_element(fine.mesh, fine.points));
+    // four points of a tetrahedron are not exact for its cubic Jacobian
+    EXPECT_NEAR(volume(fine.mesh, fine.points), volume(coarse.mesh, coarse.points), element[0] == 'T' ? 1e-3 : 1e-13);
+    const Side all = boundary_of(fine.mesh);
+    EXPECT_EQ(all.quadratic.size(), 4 * boundary_of(coarse.mesh).quadratic.size());  // it fits together
+    EXPECT_LE(vector_area(fine.points, all).norm(), 1e-13);
+    const auto whole_area = [](const ImportedMesh& body) {
+      return vector_area(body.points, {{}, body.mesh.sides.at("bottom").quadratic, {}});
+    };
+    EXPECT_EQ(fine.mesh.sides.at("bottom").quadratic.size(), 4 * coarse.mesh.sides.at("bottom").quadratic.size());
+    EXPECT_LE((whole_area(fine) - whole_area(coarse)).norm(), 1e-13);  // the same surface
+    EXPECT_EQ(fine.mesh.sides.at("edge").nodes.size(), 5u);
+    const ImportedMesh twice = split(fine);
+    EXPECT_EQ(twice.mesh.sides.at("edge").nodes.size(), 9u);
+    EXPECT_LE((whole_area(twice) - whole_area(coarse)).norm(), 1e-13);
+    // the middle of an edge of a part lies on the parabola of the whole: a map of the second order, of straight ones
+    BoxMesh box;
+    box.min = {0.0, 0.0, 0.0};
+    box.max = {2.0, 1.0, 1.0};
+    box.cells = {4, 2, 2};
+    for (Eigen::Index n = 0; n < fine.points.cols(); ++n) {
+      const Vec<double, 3> at = fine.points.col(n);
+      Vec<double, 3> x = at;  // where the map takes it from
+      for (int k = 0; k < 60; ++k) x = at - 0.0625 * Vec<double, 3>(x[1] * x[2], x[0] * x[0] - x[2], x[0] * x[1]);
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(x[i] * 4, std::round(x[i] * 4), 1e-13) << element;  // quarters
+    }
+  }
+}
+
+TEST(MshSolids, OfNineNodesInThePlaneAreNoBody) {
+  const ImportedMesh block = bent_block("H27");
+  const std::string text =
+      replaced(replaced(written(block, false), "2 2 \"bottom\"", "2 2 \"plate\""), "3 1 \"block\"", "3 9 \"x\"");
+  const auto at = text.find("5 12 2 1 1");
+  ASSERT_NE(at, std::string::npos);
+  const std::string faces = replaced(text.substr(0, at) + "$EndElements\n", "$Elements\n6", "$Elements\n4");
+  const ImportResult result = read(faces, 2);
+  ASSERT_FALSE(result.errors.empty());
+  EXPECT_NE(result.errors[0].find("is a 9-node quadrangle, which is read as a face of a 27-node hexahedron alone"),
+            std::string::npos)
+      << result.errors[0];
 }
 
 TEST(MshSolids, SplitIntoEightOfTheSameRegion) {

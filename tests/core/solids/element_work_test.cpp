@@ -69,6 +69,8 @@ TEST(ElementWork, HasTheDerivativesOfTheComplexStep) {
     expect_derivatives<Tri6, Kinematics::revolution>(linear, count);
     expect_derivatives<Tet4, Kinematics::space>(linear, count);
     expect_derivatives<Hex8, Kinematics::space>(linear, count);
+    expect_derivatives<Tet10, Kinematics::space>(linear, count);
+    expect_derivatives<Hex27, Kinematics::space>(linear, count);
     expect_derivatives<Hex8, Kinematics::space_mean_dilatation>(linear, count);
   }
   for (auto kind : {NeoHookean::Volumetric::quadratic, NeoHookean::Volumetric::log}) {
@@ -79,6 +81,8 @@ TEST(ElementWork, HasTheDerivativesOfTheComplexStep) {
     expect_derivatives<Quad4, Kinematics::revolution_mean_dilatation>(finite);
     expect_derivatives<Tet4, Kinematics::space>(finite);
     expect_derivatives<Hex8, Kinematics::space>(finite);
+    expect_derivatives<Tet10, Kinematics::space>(finite);
+    expect_derivatives<Hex20, Kinematics::space>(finite);
     expect_derivatives<Hex8, Kinematics::space_mean_dilatation>(finite);
   }
 }
@@ -128,6 +132,7 @@ TEST(ElementWork, HasThoseOfAFlowAndOfWhatItRemembers) {
     const J2Law<double> in_space{3.0, 2.0, {0.05, 0.3}, Space::solid, finite};
     expect_derivatives_of_flow<Tet4, Kinematics::space>(in_space);
     expect_derivatives_of_flow<Hex8, Kinematics::space>(in_space);
+    expect_derivatives_of_flow<Tet10, Kinematics::space>(in_space);
     expect_derivatives_of_flow<Hex8, Kinematics::space_mean_dilatation>(in_space);
   }
   expect_derivatives_of_flow<Quad8, Kinematics::plane>(

@@ -29,13 +29,20 @@ struct Setting {
 /// An element away from the axis with no two edges alike; the middles of its sides lie off their chords.
 template <class Shape>
 Nodal<double, Shape> distorted() requires(Shape::dimension == 3) {
-  Nodal<double, Shape> X;
+  using Linear = std::conditional_t<Shape::is_simplex, Tet4, Hex8>;
+  Nodal<double, Linear> corners;
   if constexpr (Shape::is_simplex)
-    X << 2.1, 3.3, 2.4, 2.2, -0.2, 0.3, 1.1, 0.2, 0.1, -0.1, 0.2, 1.3;
+    corners << 2.1, 3.3, 2.4, 2.2, -0.2, 0.3, 1.1, 0.2, 0.1, -0.1, 0.2, 1.3;
   else
-    X << 2.1, 3.3, 3.0, 1.8, 2.0, 3.1, 3.2, 2.1,   //
-        -0.2, 0.1, 1.4, 0.9, -0.1, 0.2, 1.1, 1.0,  //
+    corners << 2.1, 3.3, 3.0, 1.8, 2.0, 3.1, 3.2, 2.1,  //
+        -0.2, 0.1, 1.4, 0.9, -0.1, 0.2, 1.1, 1.0,       //
         0.1, -0.1, 0.2, 0.0, 1.2, 1.0, 1.3, 0.9;
+  Nodal<double, Shape> X;
+  for (int a = 0; a < Shape::nodes; ++a) {
+    const Vec<double, 3> at = natural_node<Shape>(a);
+    X.col(a) = corners * Linear::at(at[0], at[1], at[2], 0).value;
+    if (a >= Shape::corners) X.col(a) += 0.03 * Vec<double, 3>(std::sin(a), std::cos(2.0 * a), std::sin(3.0 * a));
+  }
   return X;
 }
 template <class Shape>
@@ -88,14 +95,14 @@ class Elements : public testing::Test {
     return element_tangent<double, Shape, kinematics>(law<double>(kinematics), at, Local::Zero());
   }
 };
-using Settings =
-    testing::Types<Setting<Tri3, Kinematics::plane>, Setting<Quad4, Kinematics::plane>,
-                   Setting<Tri6, Kinematics::plane>, Setting<Quad8, Kinematics::plane>,
-                   Setting<Tri3, Kinematics::revolution>, Setting<Quad4, Kinematics::revolution>,
-                   Setting<Tri6, Kinematics::revolution>, Setting<Quad8, Kinematics::revolution>,
-                   Setting<Quad4, Kinematics::plane_mean_dilatation>,
-                   Setting<Quad4, Kinematics::revolution_mean_dilatation>, Setting<Tet4, Kinematics::space>,
-                   Setting<Hex8, Kinematics::space>, Setting<Hex8, Kinematics::space_mean_dilatation>>;
+using Settings = testing::Types<
+    Setting<Tri3, Kinematics::plane>, Setting<Quad4, Kinematics::plane>, Setting<Tri6, Kinematics::plane>,
+    Setting<Quad8, Kinematics::plane>, Setting<Tri3, Kinematics::revolution>, Setting<Quad4, Kinematics::revolution>,
+    Setting<Tri6, Kinematics::revolution>, Setting<Quad8, Kinematics::revolution>,
+    Setting<Quad4, Kinematics::plane_mean_dilatation>, Setting<Quad4, Kinematics::revolution_mean_dilatation>,
+    Setting<Tet4, Kinematics::space>, Setting<Hex8, Kinematics::space>,
+    Setting<Hex8, Kinematics::space_mean_dilatation>, Setting<Tet10, Kinematics::space>,
+    Setting<Hex20, Kinematics::space>, Setting<Hex27, Kinematics::space>>;
 TYPED_TEST_SUITE(Elements, Settings);
 
 TYPED_TEST(Elements, HaveTheTangentThatIsTheDualOfTheWholeElement) {
@@ -145,6 +152,15 @@ struct Quad8Reduced : Quad8 {
     return {{at(-g, -g, 1), at(g, -g, 1), at(g, g, 1), at(-g, g, 1)}};
   }
 };
+/// What the twenty-node hexahedron would be with 2 x 2 x 2 points.
+struct Hex20Reduced : Hex20 {
+  static std::array<Point, 8> quadrature() {
+    std::array<Point, 8> points;
+    const double g = 1 / std::sqrt(3.0);
+    for (std::size_t q = 0; q < points.size(); ++q) points[q] = at(q & 1 ? g : -g, q & 2 ? g : -g, q & 4 ? g : -g, 1);
+    return points;
+  }
+};
 /// What the three-node triangle of revolution would be with one point.
 struct Tri3Reduced : Tri3 {
   static std::array<Point, 1> quadrature_of_revolution() { return quadrature(); }
@@ -158,8 +174,11 @@ TEST(Quadrature, WithFewerPointsWouldLeaveMotionsWithoutEnergy) {
   auto zeros = [](const Matrix<double>& K) {
     return (Eigen::SelfAdjointEigenSolver<Matrix<double>>(K).eigenvalues().array() < 1e-12 * largest_entry(K)).count();
   };
-  EXPECT_EQ(zeros(plane), 4);     // three rigid, one hourglass
-  EXPECT_EQ(zeros(revolved), 2);  // one rigid, a rotation about the point
+  const auto solid = element_tangent<double, Hex20Reduced>(law<double>(Kinematics::space), distorted<Hex20>(),
+                                                           Mat<double, 3, 20>::Zero());
+  EXPECT_EQ(zeros(solid), 60 - 6 * 8);  // six rigid and six more
+  EXPECT_EQ(zeros(plane), 4);           // three rigid, one hourglass
+  EXPECT_EQ(zeros(revolved), 2);        // one rigid, a rotation about the point
 }
 
 TYPED_TEST(Elements, HaveTheDerivativesOfTheComplexStepWithRespectToShapeAndThickness) {
@@ -190,7 +209,7 @@ template <class Shape, Kinematics kinematics>
 std::string element_name() {
   if (Shape::dimension == 3) {
     if (has_mean_dilatation(kinematics)) return "H8_mean_dilatation";
-    return Shape::is_simplex ? "T4" : "H8";
+    return (Shape::is_simplex ? "T" : "H") + std::to_string(Shape::nodes);
   }
   if (has_mean_dilatation(kinematics)) return "Q4_mean_dilatation";
   return Shape::nodes == 3 ? "T3" : Shape::nodes == 4 ? "Q4" : Shape::nodes == 6 ? "T6" : "Q8";

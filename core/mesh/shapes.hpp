@@ -1,11 +1,14 @@
 /// Shape functions and quadrature of the continuum elements: one small struct an element. In the plane nodes are
 /// numbered counter-clockwise, corners first, then the middles of the sides in turn (0-1, 1-2, ...). In space they are
 /// numbered as in VTK: nodes 0, 1, 2 of a tetrahedron are counter-clockwise seen from node 3; of a hexahedron
-/// come first the nodes at z = -1, counter-clockwise seen from above, then those at z = 1.
+/// come first the nodes at z = -1, counter-clockwise seen from above, then those at z = 1. Then come the middles of
+/// edges, of faces and of the element (corners_around of core/mesh/mesh.hpp).
 ///
 /// Rules: all stiffness rows that are no rigid motion have rank (tests: continuum_test). Three-node triangles have one
 /// point in the plane and three where the circumference turns with r (one would leave a rotation about its point free);
-/// eight-node quadrilaterals have 3 x 3: with 2 x 2 a single one has a mode of zero energy.
+/// eight-node quadrilaterals have 3 x 3: with 2 x 2 a single one has a mode of zero energy. Hexahedra with middles have
+/// 3 x 3 x 3: with 2 x 2 x 2, 48 strains, the 54 motions of one of twenty nodes that are not rigid cannot all have
+/// energy.
 #pragma once
 
 #include <array>
@@ -33,6 +36,32 @@ std::array<ShapePoint<Shape::nodes>, points> evaluated(const std::array<std::arr
   for (std::size_t i = 0; i < points; ++i) all[i] = Shape::at(rule[i][0], rule[i][1], rule[i][2]);
   return all;
 }
+
+/// Three points of Gauss on [-1, 1], and their weights.
+inline const double gauss_at[3] = {-std::sqrt(0.6), 0, std::sqrt(0.6)};
+inline constexpr double gauss_weight[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
+
+/// 3 x 3 x 3 points for a shape.
+template <class Shape>
+std::array<typename Shape::Point, 27> evaluated_in_hexahedron() {
+  std::array<typename Shape::Point, 27> all;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k)
+        all[9 * i + 3 * j + k] =
+            Shape::at(gauss_at[i], gauss_at[j], gauss_at[k], gauss_weight[i] * gauss_weight[j] * gauss_weight[k]);
+  return all;
+}
+
+/// Natural coordinates of the nodes of a hexahedron: corners, edges, faces, the middle.
+inline constexpr int hexahedron[27][3] = {
+    {-1, -1, -1}, {1, -1, -1}, {1, 1, -1},  {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1},  {-1, 1, 1},  {0, -1, -1},
+    {1, 0, -1},   {0, 1, -1},  {-1, 0, -1}, {0, -1, 1},  {1, 0, 1},   {0, 1, 1},  {-1, 0, 1}, {-1, -1, 0}, {1, -1, 0},
+    {1, 1, 0},    {-1, 1, 0},  {-1, 0, 0},  {1, 0, 0},   {0, -1, 0},  {0, 1, 0},  {0, 0, -1}, {0, 0, 1},   {0, 0, 0}};
+
+/// The parabola that is 1 at a node -1, 0 or 1 and 0 at the two others, and its slope.
+constexpr double parabola(int node, double x) { return node == 0 ? 1 - x * x : 0.5 * x * (x + node); }
+constexpr double slope_of_parabola(int node, double x) { return node == 0 ? -2 * x : x + 0.5 * node; }
 
 /// Three inner points, exact for polynomials of degree 2.
 inline std::array<std::array<double, 3>, 3> three_points() {
@@ -179,6 +208,98 @@ struct Hex8 {
   }
 };
 
+/// Ten-node tetrahedron, four points (exact for polynomials of degree 2).
+struct Tet10 {
+  static constexpr int nodes = 10, corners = 4, dimension = 3;
+  static constexpr bool is_simplex = true;
+  using Point = ShapePoint<nodes, dimension>;
+  static Point at(double x, double y, double z, double weight) {
+    static constexpr int ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    static constexpr double slope[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double l[4] = {1 - x - y - z, x, y, z};
+    Point p;
+    p.weight = weight;
+    for (int a = 0; a < corners; ++a) {
+      p.value[a] = l[a] * (2 * l[a] - 1);
+      for (int i = 0; i < 3; ++i) p.gradient(i, a) = (4 * l[a] - 1) * slope[a][i];
+    }
+    for (int k = 0; k < 6; ++k) {
+      const auto [a, b] = ends[k];
+      p.value[4 + k] = 4 * l[a] * l[b];
+      for (int i = 0; i < 3; ++i) p.gradient(i, 4 + k) = 4 * (l[a] * slope[b][i] + l[b] * slope[a][i]);
+    }
+    return p;
+  }
+  static std::array<Point, 4> quadrature() {
+    const double b = (5 - std::sqrt(5.0)) / 20, a = 1 - 3 * b, weight = 1.0 / 24;
+    return {at(b, b, b, weight), at(a, b, b, weight), at(b, a, b, weight), at(b, b, a, weight)};
+  }
+};
+
+/// Twenty-node hexahedron (serendipity), 3 x 3 x 3 points.
+struct Hex20 {
+  static constexpr int nodes = 20, corners = 8, dimension = 3;
+  static constexpr bool is_simplex = false;
+  using Point = ShapePoint<nodes, dimension>;
+  static Point at(double x, double y, double z, double weight) {
+    const double place[3] = {x, y, z};
+    Point p;
+    p.weight = weight;
+    for (int a = 0; a < nodes; ++a) {
+      double f[3], df[3], sum = -2;  // factors, and of a corner what is left
+      for (int i = 0; i < 3; ++i) {
+        const int s = detail::hexahedron[a][i];
+        f[i] = s == 0 ? 1 - place[i] * place[i] : 0.5 * (1 + s * place[i]);
+        df[i] = s == 0 ? -2 * place[i] : 0.5 * s;
+        sum += s * place[i];
+      }
+      const bool is_corner = a < corners;
+      p.value[a] = f[0] * f[1] * f[2] * (is_corner ? sum : 1);
+      for (int i = 0; i < 3; ++i) {
+        const double others = f[(i + 1) % 3] * f[(i + 2) % 3];
+        p.gradient(i, a) = others * (is_corner ? df[i] * sum + f[i] * detail::hexahedron[a][i] : df[i]);
+      }
+    }
+    return p;
+  }
+  static std::array<Point, 27> quadrature() { return detail::evaluated_in_hexahedron<Hex20>(); }
+};
+
+/// Twenty-seven-node hexahedron, 3 x 3 x 3 points.
+struct Hex27 {
+  static constexpr int nodes = 27, corners = 8, dimension = 3;
+  static constexpr bool is_simplex = false;
+  using Point = ShapePoint<nodes, dimension>;
+  static Point at(double x, double y, double z, double weight) {
+    const double place[3] = {x, y, z};
+    Point p;
+    p.weight = weight;
+    for (int a = 0; a < nodes; ++a) {
+      double f[3], df[3];
+      for (int i = 0; i < 3; ++i) {
+        f[i] = detail::parabola(detail::hexahedron[a][i], place[i]);
+        df[i] = detail::slope_of_parabola(detail::hexahedron[a][i], place[i]);
+      }
+      p.value[a] = f[0] * f[1] * f[2];
+      for (int i = 0; i < 3; ++i) p.gradient(i, a) = df[i] * f[(i + 1) % 3] * f[(i + 2) % 3];
+    }
+    return p;
+  }
+  static std::array<Point, 27> quadrature() { return detail::evaluated_in_hexahedron<Hex27>(); }
+};
+
+/// Natural coordinates of node a of an element of space.
+template <class Shape>
+Vec<double, 3> natural_node(int a) {
+  if constexpr (!Shape::is_simplex) {
+    return {double(detail::hexahedron[a][0]), double(detail::hexahedron[a][1]), double(detail::hexahedron[a][2])};
+  } else {
+    const auto corner = [](int k) { return Vec<double, 3>(k == 1, k == 2, k == 3); };
+    constexpr int ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    return a < 4 ? corner(a) : Vec<double, 3>((corner(ends[a - 4][0]) + corner(ends[a - 4][1])) / 2);
+  }
+}
+
 /// Values at the nodes of an element, one column a node.
 template <class T, class Shape>
 using Nodal = Mat<T, Shape::dimension, Shape::nodes>;
@@ -210,6 +331,12 @@ void with_shape(ElementShape shape, F&& f) {
       return f(Tet4{});
     case ElementShape::hex8:
       return f(Hex8{});
+    case ElementShape::tet10:
+      return f(Tet10{});
+    case ElementShape::hex20:
+      return f(Hex20{});
+    case ElementShape::hex27:
+      return f(Hex27{});
   }
 }
 
