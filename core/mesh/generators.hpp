@@ -1,6 +1,6 @@
 /// From the description of a mesh to its topology (numbers play no part) and its coordinates (in any scalar, so that
 /// the derivative with respect to every dimension is exact). One file per family: box, quad, ring, disk, half_disk,
-/// half_ball, extruded, chain. It holds the description for the scene, as the user wrote it, which says its keys
+/// half_ball, ball, extruded, chain. It holds the description for the scene, as the user wrote it, which says its keys
 /// (core/algebra/described.hpp), `filling` and cell_count(), the number of its quadrilaterals or bars; fault, topology
 /// and coordinates; and `bend` if it has curved sides: what moves the middles of quadratic elements onto them. What a
 /// description lacks does not compile.
@@ -9,6 +9,7 @@
 #include <string>
 #include <variant>
 
+#include "core/mesh/ball.hpp"
 #include "core/mesh/box.hpp"
 #include "core/mesh/chain.hpp"
 #include "core/mesh/disk.hpp"
@@ -24,8 +25,8 @@
 namespace stickslip {
 
 /// In the order in which messages and the schema name them.
-using MeshDescription = std::variant<BoxMesh, QuadMesh, RingMesh, DiskMesh, HalfDiskMesh, HalfBallMesh, ExtrudedMesh,
-                                     PointMesh, LineMesh, ArcMesh, ImportedMesh>;
+using MeshDescription = std::variant<BoxMesh, QuadMesh, RingMesh, DiskMesh, HalfDiskMesh, HalfBallMesh, BallMesh,
+                                     ExtrudedMesh, PointMesh, LineMesh, ArcMesh, ImportedMesh>;
 
 /// What the mesh is made of.
 Filling filling_of(const MeshDescription&);

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "core/algebra/described.hpp"
+#include "core/mesh/circle.hpp"
 #include "core/mesh/half_disk.hpp"
 
 namespace stickslip {
@@ -192,17 +193,11 @@ Points<T> coordinates(const HalfBallMesh& ball, const Numbers<T>& numbers, int) 
   return points;
 }
 
-/// Puts the middles of the surface's faces on the sphere, along their rays from its centre.
+/// Puts the middles of the surface's faces on the sphere.
 template <class T>
 void bend(const HalfBallMesh& ball, const Mesh& mesh, const Numbers<T>& numbers, Points<T>& points) {
   const Vec<T, 3> center(numbers(ball.center[0]), numbers(ball.center[1]), numbers(ball.center[2]));
-  const int corners = HalfBallLayout(ball).node_count();
-  for (const int node : mesh.sides.at("surface").nodes) {
-    if (node < corners) continue;
-    const Vec<T, 3> ray = Vec<T, 3>(points.col(node)) - center;
-    const T stretch = numbers(ball.radius) / norm(ray);
-    for (int i = 0; i < 3; ++i) points(i, node) = center[i] + stretch * ray[i];
-  }
+  bend_side(mesh.sides.at("surface"), center, numbers(ball.radius), points);
 }
 
 }  // namespace stickslip

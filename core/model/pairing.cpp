@@ -287,8 +287,8 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   if (pairing.obstacle < 0) {
     pairing.master = sides.master;  // of a side that touches itself the axis tells how thick it is
     if (!contact.is_of_itself()) pairing.master = surface_of(model, points, pairing.master);
-    if (model.dimension == 3 && (contact.is_of_itself() || !contact.group.empty()))
-      throw ModelError("in space a contact has a slave and a master of its own", where);
+    if (model.dimension == 3 && contact.is_of_itself())
+      throw ModelError("in space a side has no contact with itself", where);
     if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
   } else if (model.dimension == 3 && !is_in_space(model.scene.obstacles[pairing.obstacle].shape)) {
     throw ModelError("this surface is not made for space", "/obstacles/" + contact.master);

@@ -91,14 +91,17 @@ void read_surface(const JsonNode& node, Contact& contact, const SceneReading& re
   if (const auto corner = node.find("corner")) contact.corner = corner->number(angle).value_or(contact.corner);
 }
 
-/// Mean length of the facets around a body at the start. pre: it has a mesh; what else it has may be at fault.
+/// Mean length of the facets around a body at the start, in space of their edges. pre: it has a mesh; what else it has
+/// may be at fault.
 double facet_length(const std::string& body, const Side& boundary, const SceneReading& reading) {
   const auto points =
       make_points<double>(reading.described.at(body), reading.meshes.at(body), reading.scene.as<double>());
   double length = 0;
+  std::size_t count = 0;  // of edges: a facet of the plane is one itself
   for (const auto& facet : boundary.facets)
-    length += (points.col(facet[0]) - points.col(facet[1])).norm() / static_cast<double>(boundary.facets.size());
-  return length;
+    for (std::size_t k = facet.size() == 2 ? 1 : 0; k < facet.size(); ++k, ++count)
+      length += (points.col(facet[k]) - points.col(facet[(k + 1) % facet.size()])).norm();
+  return length / static_cast<double>(count);
 }
 
 /// The bodies that {"between": ...} names; empty where it is at fault. `self`: one is enough.
@@ -145,10 +148,6 @@ std::vector<std::string> bodies_between(const JsonNode& node, bool self, const S
 /// One contact for each pair of bodies, along their whole boundaries. The slave is the body of the shorter facets, or
 /// of two alike the one named first. `self`: each also touches itself.
 void read_pairs(const Contact& common, const JsonNode& between, bool self, SceneReading& reading) {
-  if (reading.dimension() == 3) {
-    between.error_at_key("is for a plane space; in the space solid a contact has a slave and a master");
-    return;
-  }
   constexpr double alike = 1e-9;
   std::vector<std::pair<std::string, double>> bodies;
   for (const std::string& body : bodies_between(between, self, reading)) {
@@ -229,7 +228,10 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   // normal of a smooth surface. A point that slides over facets has no equilibrium at some of their vertices.
   const bool is_free = reading.scene.finite_strain && !node.find("surface") && has_facets(contact.master, reading);
   contact.segment = is_solid && is_free && reading.dimension() == 2;
-  const bool self = between && node.find("self") && node.find("self")->boolean().value_or(false);
+  const auto touches_itself = between ? node.find("self") : std::nullopt;
+  const bool self = touches_itself && touches_itself->boolean().value_or(false);
+  if (self && reading.dimension() == 3)
+    touches_itself->must_be("false in the space solid: a body does not touch itself there");
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice({"node", "segment"}) == "segment";
     const bool of_itself = between ? self : contact.is_of_itself();
