@@ -79,6 +79,7 @@ Mesh with_middles(const Mesh& linear, ElementShape shape) {
   Mesh mesh = linear;
   mesh.shape = shape;
   mesh.connectivity.clear();
+  mesh.connectivity.reserve(static_cast<std::size_t>(linear.element_count()) * nodes_of(shape));
   const auto count = static_cast<std::size_t>(nodes_of(linear.shape));
   const auto& around = corners_around(shape);
   Between between;
