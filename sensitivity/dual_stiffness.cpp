@@ -82,6 +82,15 @@ void DualStiffness::add_forces(const Vector<Direction>& u, Vector<Direction>& fo
       case 24:
         add.template operator()<24>(e);
         break;
+      case 30:
+        add.template operator()<30>(e);
+        break;
+      case 60:
+        add.template operator()<60>(e);
+        break;
+      case 81:
+        add.template operator()<81>(e);
+        break;
       default:
         throw std::logic_error("DualStiffness: an element of a number of dofs that is not known");
     }

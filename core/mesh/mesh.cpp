@@ -15,7 +15,11 @@ Lists with_corners(int corners, const Lists& between) {
   return around;
 }
 
-/// Sides of a quadratic element: the corners of each, and the nodes between them.
+Lists edges_of_hexahedron() {
+  return {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+}
+
+/// Faces of a quadratic element: the corners of each, and the nodes between them.
 Lists with_nodes_between(const Lists& linear, const Lists& around) {
   Lists sides = linear;
   for (auto& side : sides) {
@@ -26,8 +30,8 @@ Lists with_nodes_between(const Lists& linear, const Lists& around) {
       });
       if (found != around.end()) side.push_back(static_cast<int>(found - around.begin()));
     };
-    const std::size_t count = corners.size(), edges = count == 2 ? 1 : count;
-    for (std::size_t k = 0; k < edges; ++k) add({corners[k], corners[(k + 1) % count]});
+    const std::size_t count = corners.size();
+    for (std::size_t k = 0; k < count; ++k) add({corners[k], corners[(k + 1) % count]});
     if (count == 4) add(corners);
   }
   return sides;
@@ -35,7 +39,33 @@ Lists with_nodes_between(const Lists& linear, const Lists& around) {
 
 }  // namespace
 
-int nodes_of(ElementShape shape) { return is_continuum(shape) ? static_cast<int>(corners_around(shape).size()) : 2; }
+int nodes_of(ElementShape shape) {
+  switch (shape) {
+    case ElementShape::point:
+      return 2;
+    case ElementShape::bar2:
+      return 2;
+    case ElementShape::tri3:
+      return 3;
+    case ElementShape::quad4:
+      return 4;
+    case ElementShape::tri6:
+      return 6;
+    case ElementShape::quad8:
+      return 8;
+    case ElementShape::tet4:
+      return 4;
+    case ElementShape::hex8:
+      return 8;
+    case ElementShape::tet10:
+      return 10;
+    case ElementShape::hex20:
+      return 20;
+    case ElementShape::hex27:
+      return 27;
+  }
+  return 0;
+}
 
 bool is_continuum(ElementShape shape) { return shape != ElementShape::point && shape != ElementShape::bar2; }
 bool is_quadratic(ElementShape shape) { return is_continuum(shape) && linear_shape(shape) != shape; }
@@ -63,75 +93,96 @@ ElementShape linear_shape(ElementShape shape) {
 }
 
 const Lists& corners_around(ElementShape shape) {
-  static const Lists none, three = with_corners(3, {}), four = with_corners(4, {}), eight = with_corners(8, {}),
-                           tri6 = with_corners(3, {{0, 1}, {1, 2}, {2, 0}}),
-                           quad8 = with_corners(4, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}),
-                           tet10 = with_corners(4, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}});
-  static const Lists edges{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
-                           {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}},
-      hex20 = with_corners(8, edges), hex27 = [] {
-        Lists all = edges;
-        for (const auto& centre : Lists{{0, 4, 7, 3},
-                                        {1, 2, 6, 5},
-                                        {0, 1, 5, 4},
-                                        {3, 7, 6, 2},
-                                        {0, 3, 2, 1},
-                                        {4, 5, 6, 7},
-                                        {0, 1, 2, 3, 4, 5, 6, 7}})
-          all.push_back(centre);
+  static const Lists none;
+  switch (shape) {
+    case ElementShape::tri6: {
+      static const Lists around = with_corners(3, {{0, 1}, {1, 2}, {2, 0}});
+      return around;
+    }
+    case ElementShape::quad8: {
+      static const Lists around = with_corners(4, {{0, 1}, {1, 2}, {2, 3}, {3, 0}});
+      return around;
+    }
+    case ElementShape::tet10: {
+      static const Lists around = with_corners(4, {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}});
+      return around;
+    }
+    case ElementShape::hex20: {
+      static const Lists around = with_corners(8, edges_of_hexahedron());
+      return around;
+    }
+    case ElementShape::hex27: {
+      static const Lists around = [] {
+        Lists all = edges_of_hexahedron();
+        for (const auto& corners : Lists{{0, 4, 7, 3},
+                                         {1, 2, 6, 5},
+                                         {0, 1, 5, 4},
+                                         {3, 7, 6, 2},
+                                         {0, 3, 2, 1},
+                                         {4, 5, 6, 7},
+                                         {0, 1, 2, 3, 4, 5, 6, 7}})
+          all.push_back(corners);
         return with_corners(8, all);
       }();
-  switch (shape) {
-    case ElementShape::tri3:
-      return three;
+      return around;
+    }
+    case ElementShape::tri3: {
+      static const Lists around = with_corners(3, {});
+      return around;
+    }
     case ElementShape::quad4:
-    case ElementShape::tet4:
-      return four;
-    case ElementShape::tri6:
-      return tri6;
-    case ElementShape::quad8:
-      return quad8;
-    case ElementShape::hex8:
-      return eight;
-    case ElementShape::tet10:
-      return tet10;
-    case ElementShape::hex20:
-      return hex20;
-    case ElementShape::hex27:
-      return hex27;
+    case ElementShape::tet4: {
+      static const Lists around = with_corners(4, {});
+      return around;
+    }
+    case ElementShape::hex8: {
+      static const Lists around = with_corners(8, {});
+      return around;
+    }
     default:
       return none;
   }
 }
 
 const Lists& sides_of(ElementShape shape) {
-  static const Lists none, tri3{{0, 1}, {1, 2}, {2, 0}}, quad4{{0, 1}, {1, 2}, {2, 3}, {3, 0}},
-      tet4{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}},
-      hex8{{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-  static const Lists tri6 = with_nodes_between(tri3, corners_around(ElementShape::tri6)),
-                     quad8 = with_nodes_between(quad4, corners_around(ElementShape::quad8)),
-                     tet10 = with_nodes_between(tet4, corners_around(ElementShape::tet10)),
-                     hex20 = with_nodes_between(hex8, corners_around(ElementShape::hex20)),
-                     hex27 = with_nodes_between(hex8, corners_around(ElementShape::hex27));
+  static const Lists none;
   switch (shape) {
-    case ElementShape::tri3:
-      return tri3;
-    case ElementShape::quad4:
-      return quad4;
-    case ElementShape::tri6:
-      return tri6;
-    case ElementShape::quad8:
-      return quad8;
-    case ElementShape::tet4:
-      return tet4;
-    case ElementShape::hex8:
-      return hex8;
-    case ElementShape::tet10:
-      return tet10;
-    case ElementShape::hex20:
-      return hex20;
-    case ElementShape::hex27:
-      return hex27;
+    case ElementShape::tri3: {
+      static const Lists sides{{0, 1}, {1, 2}, {2, 0}};
+      return sides;
+    }
+    case ElementShape::quad4: {
+      static const Lists sides{{0, 1}, {1, 2}, {2, 3}, {3, 0}};
+      return sides;
+    }
+    case ElementShape::tri6: {
+      static const Lists sides{{0, 1, 3}, {1, 2, 4}, {2, 0, 5}};
+      return sides;
+    }
+    case ElementShape::quad8: {
+      static const Lists sides{{0, 1, 4}, {1, 2, 5}, {2, 3, 6}, {3, 0, 7}};
+      return sides;
+    }
+    case ElementShape::tet4: {
+      static const Lists sides{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+      return sides;
+    }
+    case ElementShape::hex8: {
+      static const Lists sides{{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+      return sides;
+    }
+    case ElementShape::tet10: {
+      static const Lists sides = with_nodes_between(sides_of(ElementShape::tet4), corners_around(shape));
+      return sides;
+    }
+    case ElementShape::hex20: {
+      static const Lists sides = with_nodes_between(sides_of(ElementShape::hex8), corners_around(shape));
+      return sides;
+    }
+    case ElementShape::hex27: {
+      static const Lists sides = with_nodes_between(sides_of(ElementShape::hex8), corners_around(shape));
+      return sides;
+    }
     default:
       return none;
   }

@@ -41,8 +41,8 @@ ElementShape linear_shape(ElementShape);
 constexpr int corners_of_face(std::size_t nodes) { return nodes == 3 || nodes == 6 ? 3 : 4; }
 /// The facets of a side of a quadratic element. Of an edge two, from its middle to its ends. Of a face those that its
 /// middles cut: four triangles of six nodes; four quadrilaterals of nine; of eight, which have no node in the middle, a
-/// triangle at each corner and the quadrilateral of the middles. So the areas of all nodes are positive, and corners
-/// share those of middles and not the reverse (core/README.md, Shares). A side without middles: itself.
+/// triangle at each corner and the quadrilateral of the middles. So the shares of all nodes are positive, as they are
+/// of a whole face if it has nine nodes (core/README.md, Shares). A side without middles: itself.
 std::vector<std::vector<int>> facets_of_side(const std::vector<int>& side, int dimension);
 
 /// Named part of the boundary: its nodes, in order along the side where it is a curve, and its facets. In the plane a

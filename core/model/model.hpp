@@ -102,7 +102,7 @@ struct ContactPoint {
   std::vector<std::vector<int>> area_facets;  ///< facets of the slave side at the node
   /// The same as indices in Model::contact_nodes; for solid bodies on a surface.
   std::vector<std::vector<int>> facet_places;
-  /// Sides of elements at the node, in space facets of these, a share of which is its tributary area.
+  /// Sides of elements at the node, or facets of these, a share of which is its tributary area.
   std::vector<std::vector<int>> area_edges;
   /// Segment-integrated contact: the segments that the multiplier of nodes[0] acts on. At finite strain: its whole
   /// slave facets, whose present segments are Facing::pieces.

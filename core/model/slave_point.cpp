@@ -6,12 +6,16 @@
 namespace stickslip {
 namespace {
 
+/// Whether all nodes of the sides of an element have a positive share of them. Of faces of six nodes corners have none,
+/// of eight a negative one.
+bool has_positive_shares(ElementShape shape) { return shape != ElementShape::tet10 && shape != ElementShape::hex20; }
+
 /// Mean length of the facets at a slave node, in space of their edges; 0 without facets.
 double local_size(const Points<double>& points, const ContactPoint& point) {
   double size = 0;
   if (points.rows() == 3) {
     int edges = 0;
-    for (const auto& face : point.area_edges)
+    for (const auto& face : point.area_facets)
       for (std::size_t a = 0; a < face.size(); ++a, ++edges)
         size += (points.col(face[a]) - points.col(face[(a + 1) % face.size()])).norm();
     return edges > 0 ? size / edges : 0;
@@ -32,8 +36,7 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
   point.slave_body = pairing.slave.body;
   for (const auto& facet : pairing.slave.facets)
     if (std::find(facet.begin(), facet.end(), node) != facet.end()) point.area_facets.push_back(facet);
-  // in space a corner of a quadratic face has no share of it, or a negative one
-  for (const auto& edge : model.dimension == 3 ? pairing.slave.facets : pairing.slave.edges)
+  for (const auto& edge : has_positive_shares(shape) ? pairing.slave.edges : pairing.slave.facets)
     if (std::find(edge.begin(), edge.end(), node) != edge.end()) point.area_edges.push_back(edge);
   point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
   point.mesh_size = local_size(points, point);

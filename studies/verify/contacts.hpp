@@ -28,7 +28,7 @@ class Contact {
         side_(cut_at_middles(scene.side(sides.at("slave")))),
         master_(scene, given, sides.at("slave"), sides.at("master"), segment),
         facets_(body_.in_space() ? Facets{} : facets_of(side_)),
-        areas_(areas_of(scene, body_, side_)) {
+        areas_(areas_of(scene, body_, body_.element == "H27" ? scene.side(sides.at("slave")) : side_)) {
     if (body_.in_space() && !master_.rigid())
       faces_.emplace(scene.points, cut_at_middles(scene.side(sides.at("master"))).edges, master_.smooth, master_.corner,
                      scene.finite);

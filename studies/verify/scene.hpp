@@ -226,8 +226,9 @@ struct Side {
   bool has(int node) const { return nodes.contains(node); }
 };
 
-/// The side with each face that has middles cut at them, as contact sees it: into four faces of as many corners; one of
-/// eight nodes, which has none within, into a triangle at each corner and the quadrilateral between them.
+/// The side with each face that has middles cut at them, as contact sees it: into four faces of as many corners; one
+/// of eight nodes, which has none within, into a triangle at each corner and the quadrilateral between them. Areas of
+/// nodes are shares of these, since corners of the whole have none or a negative one, but if it has nine nodes.
 inline Side cut_at_middles(Side side) {
   std::vector<Nodes> facets;
   for (const auto& face : side.edges) {

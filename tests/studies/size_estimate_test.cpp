@@ -15,6 +15,14 @@ TEST(SizeEstimate, CountsNodesBeforeTheyAreMade) {
   EXPECT_NEAR(estimated_nodes(box_of(100), "Q4"), 101 * 101, 0.05 * 101 * 101);
   EXPECT_NEAR(estimated_nodes(box_of(100), "Q8"), 3 * 101 * 101, 0.05 * 3 * 101 * 101);
   EXPECT_NEAR(estimated_nodes(box_of(100), "T6"), 201 * 201, 0.05 * 201 * 201);
+  BoxMesh block;
+  block.min = {0.0, 0.0, 0.0};
+  block.max = {1.0, 1.0, 1.0};
+  block.cells = {50, 50, 50};
+  const double doubled = std::pow(101, 3);
+  EXPECT_NEAR(estimated_nodes(block, "H8"), std::pow(51, 3), 0.1 * std::pow(51, 3));
+  EXPECT_NEAR(estimated_nodes(block, "H20"), doubled / 2, 0.05 * doubled);
+  for (const char* element : {"H27", "T10"}) EXPECT_NEAR(estimated_nodes(block, element), doubled, 0.05 * doubled);
 }
 
 /// Peaks that runs of a box on a floor had (MB, displacements, contact dofs, condensed).

@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/mesh/generators.hpp"
 #include "studies/io/atomic_file.hpp"
 #include "tests/studies/temporary_folder.hpp"
 #include "tests/studies/vtu_reader.hpp"
@@ -172,6 +173,44 @@ TEST_F(Vtu, BodiesAreAppendedWithTheirNodesAfterThoseBefore) {
   EXPECT_EQ(data.points(0, 5), 6);
   EXPECT_THROW(append_mesh(data, bar, Points<double>::Zero(3, 2)), std::invalid_argument);
   EXPECT_THROW(append_mesh(data, bar, Points<double>::Zero(2, 3)), std::invalid_argument);
+}
+
+/// The parametric coordinates that VTK documents for its quadratic cells, doubled.
+TEST_F(Vtu, QuadraticCellsOfSpaceHaveTheirNodesInVtksOrder) {
+  using Places = std::vector<std::array<int, 3>>;
+  const Places tetrahedron{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0},
+                           {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}},
+      hexahedron{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}, {1, 0, 0},
+                 {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2}, {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1},
+                 {2, 2, 1}, {0, 2, 1}, {0, 1, 1}, {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}, {1, 1, 1}};
+  BoxMesh box;
+  box.min = {0.0, 0.0, 0.0};
+  box.max = {2.0, 2.0, 2.0};
+  box.cells = {1, 1, 1};
+  for (const auto& [element, cell, type] : {std::tuple{"T10", VtuCell::tetra10, 24},
+                                            {"H20", VtuCell::hexahedron20, 25},
+                                            {"H27", VtuCell::hexahedron27, 29}}) {
+    const Mesh mesh = make_mesh(box, element, 3);
+    VtuData data;
+    append_mesh(data, mesh, make_points<double>(box, mesh, {}));
+    const std::string xml = written(data);
+    const auto types = array_named(xml, "types").values<std::uint8_t>();
+    const auto nodes = array_named(xml, "connectivity").values<std::int64_t>();
+    const auto points = array_named(xml, "Points").values<double>();
+    ASSERT_EQ(types.size(), static_cast<std::size_t>(mesh.element_count()));
+    EXPECT_EQ(types[0], type);
+    EXPECT_EQ(static_cast<int>(cell), type);
+    const int count = nodes_of(mesh.shape);
+    ASSERT_EQ(nodes.size(), static_cast<std::size_t>(count) * types.size());
+    const auto at = [&](int a) { return Eigen::Map<const Eigen::Vector3d>(points.data() + 3 * nodes[a]); };
+    for (int a = 0; a < count; ++a) {
+      const auto& p = count == 10 ? tetrahedron[a] : hexahedron[a];
+      const int third = count == 10 ? 2 : 3, up = count == 10 ? 3 : 4;  // corners along the second and third coordinate
+      const Eigen::Vector3d expected =
+          at(0) + (p[0] * (at(1) - at(0)) + p[1] * (at(third) - at(0)) + p[2] * (at(up) - at(0))) / 2;
+      EXPECT_EQ(Eigen::Vector3d(at(a)), expected) << element << " " << a;  // halves of whole numbers
+    }
+  }
 }
 
 TEST_F(Vtu, ACollectionListsItsFilesWithTimesThatReadBackExactly) {
