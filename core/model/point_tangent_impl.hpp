@@ -110,6 +110,95 @@ PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing& 
   return tangent;
 }
 
+/// What a point in space takes from the displacements of its nodes, to first order: its own motion; that of the place
+/// that it faces, and of the surface's slopes there; and likewise at its last foot. That are seven sums over the nodes,
+/// however many these are. Rows: an orthonormal basis of the weights of these sums, at most seven; columns: `places`.
+template <class T>
+Eigen::MatrixXd jets_of(const ContactInput<T>& input, int p, const Facing& facing, const std::vector<int>& places) {
+  constexpr double rounding = 1e-13;  // of a row: what is left of one that the others span
+  constexpr int most = 7;
+  const auto& point = input.model.points[p];
+  const MasterSurface& surface = input.model.surfaces[point.surface];
+  Eigen::MatrixXd basis(most, static_cast<Eigen::Index>(places.size()));
+  Eigen::Index count = 0;
+  const auto add = [&](Eigen::RowVectorXd row) {
+    const double size = row.norm();
+    for (int twice = 0; twice < 2; ++twice) row -= row * basis.topRows(count).transpose() * basis.topRows(count);
+    if (row.norm() > rounding * size) basis.row(count++) = row.normalized();
+  };
+  add(Eigen::RowVectorXd::Unit(basis.cols(), 0));
+  const auto add_place = [&](int patch, const Vec<double, 2>& at) {
+    const PlaceWeights weights = place_weights(surface.patches<3>()[patch], at);
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(3, basis.cols());
+    Eigen::Index vertex = 0;
+    for_each_place(surface, patch, [&](int place) {
+      const auto column = std::find(places.begin(), places.end(), place) - places.begin();
+      sums.col(column) += weights.row(vertex++).head<3>().transpose();
+    });
+    for (const auto& row : sums.rowwise()) add(row);
+  };
+  add_place(facing.patch, facing.at);
+  if (const auto last = earlier(input, p); point.foot >= 0 && last.patch != no_patch)
+    add_place(last.patch, stored_place<3>(input.model, point, last.patch, last.foot).at);
+  return basis.topRows(count);
+}
+
+/// Tangent of a point in space by the displacements of the nodes at the places `of`, of which the first `faced` have
+/// forces: by dual numbers along jets_of() them.
+template <class T, int Tangents>
+PointTangent<T> tangent_by_jets(const ContactInput<T>& input, int p, const Facing& facing, std::vector<int> of,
+                                int faced, const Vector<T>& compact, const Vector<T>& multiplier, ContactState state) {
+  constexpr int D = 3, C = 1 + Tangents, seeds = 7 * D;
+  using Probe = Dual<seeds + C, T>;
+  PointTangent<T> tangent;
+  auto& places = tangent.places;
+  places = std::move(of);
+  const Eigen::MatrixXd jets = jets_of(input, p, facing, places);
+  const auto displacement = [&](int place) {
+    const auto column = std::find(places.begin(), places.end(), place) - places.begin();
+    Vec<Probe, D> u;
+    for (int i = 0; i < D; ++i) {
+      u[i] = Probe(compact[D * place + i]);
+      for (Eigen::Index r = 0; r < jets.rows(); ++r) u[i].d[D * r + i] = T(jets(r, column));
+    }
+    return u;
+  };
+  const auto spread = [&](const Probe& x, auto&& row) {
+    for (Eigen::Index k = 0; k < jets.cols(); ++k)
+      for (int i = 0; i < D; ++i) {
+        T sum(0);
+        for (Eigen::Index r = 0; r < jets.rows(); ++r) sum += x.d[D * r + i] * T(jets(r, k));
+        row[D * k + i] = sum;
+      }
+  };
+  const FixedInput<Probe, T, Tangents> fixed_input(input, p);
+  const Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement, input.time};
+  const auto at = place_point<D>(positions, input.model.points[p], facing, earlier(input, p));
+  const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, seeds);
+  const auto outcome = point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                            fixed_input.friction, 0, &state);
+  const Vec<Probe, D> force = point_force<Probe, D, Tangents>(at.geometry, outcome.traction);
+  const auto count = static_cast<Eigen::Index>(D * places.size());
+  tangent.force_w = Matrix<T>::Constant(count, count, T(0));
+  tangent.force_l = Matrix<T>::Constant(count, C, T(0));
+  for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
+    for (int i = 0; i < D; ++i) {
+      const Probe share = at.geometry.weights[n] * force[i];
+      spread(share, tangent.force_w.row(D * n + i));
+      for (int c = 0; c < C; ++c) tangent.force_l(D * n + i, c) = share.d[seeds + c];
+    }
+  tangent.row_w.resize(C, count);
+  tangent.row_l.resize(C, C);
+  const T& area = input.slots.geometry[p].area;
+  for (int r = 0; r < C; ++r) {
+    const Probe row = area * (r == 0 ? outcome.traction.normal - lambda.normal
+                                     : outcome.traction.tangential[r - 1] - lambda.tangential[r - 1]);
+    spread(row, tangent.row_w.row(r));
+    for (int c = 0; c < C; ++c) tangent.row_l(r, c) = row.d[seeds + c];
+  }
+  return tangent;
+}
+
 /// Tangent by the displacements of the nodes at the places `of`, of which the first `faced` have forces, `at_once` dofs
 /// in one sweep. `facing`: what the point faces of its surface.
 template <class T, int D, int Tangents, int at_once>
@@ -166,8 +255,7 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
   if (state == ContactState::open) return detail::open_tangent(input, p, found);
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if (by_places) {
-      // In the plane 18: the slave node and four vertices each of this patch and of the last; 12: where these are
-      // neighbours. In space 27: in two or three sweeps of the 17 nodes of a regular patch.
+      // 18: the slave node and four vertices each of this patch and of the last; 12: where these are neighbours.
       int faced = 0;
       auto places = detail::places_of_tangent(input, p, found, faced);
       const auto tangent = [&]<int at_once>() {
@@ -177,7 +265,8 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
       if constexpr (D == 2)
         return places.size() <= 6 ? tangent.template operator()<12>() : tangent.template operator()<18>();
       else
-        return tangent.template operator()<27>();
+        return detail::tangent_by_jets<T, Tangents>(input, p, found, std::move(places), faced, compact, multiplier,
+                                                    state);
     }
     constexpr int C = 1 + Tangents;
     using Probe = Dual<D + C, T>;
