@@ -34,7 +34,7 @@ Locking locking_of(ElementShape shape) {
     case ElementShape::tri3:
       return {"T3", "element T6"};
     case ElementShape::hex8:
-      return {"H8", "element H8_mean_dilatation or H20"};
+      return {"H8", "element H8_mean_dilatation"};
     default:
       return {"T4", "element H8_mean_dilatation or T10"};
   }

@@ -12,9 +12,10 @@ namespace {
 /// A convex element away from the axis: the corners and middles of the reference element, moved a little.
 template <class Shape>
 Nodal<double, Shape> some_element() requires(Shape::dimension == 3) {
-  const Mat<double, 3, 8> block{{1, 3, 3, 1, 1, 3, 3, 1}, {0, 0, 2, 2, 0, 0, 2, 2}, {0, 0, 0, 0, 2, 2, 2, 2}};
-  Nodal<double, Shape> X = block.leftCols(Shape::nodes);
-  if constexpr (Shape::is_simplex) X.col(2) = block.col(3), X.col(3) = block.col(4);
+  Nodal<double, Shape> X;
+  for (int a = 0; a < Shape::nodes; ++a)
+    X.col(a) = Shape::is_simplex ? Vec<double, 3>(Vec<double, 3>(1, 0, 0) + 2 * natural_node<Shape>(a))
+                                 : Vec<double, 3>(Vec<double, 3>(2, 1, 1) + natural_node<Shape>(a));
   return X + 0.1 * derivatives::arbitrary(dofs_of<Shape>).reshaped(3, Shape::nodes);
 }
 template <class Shape>
