@@ -263,7 +263,7 @@ TEST(Verify, HoldsForTheGapOfASideThatDoesNotTouchItself) {
 }
 
 TEST(Verify, HoldsForSolidBodiesInSpace) {
-  for (const char* element : {"H8", "H8_mean_dilatation", "T4"})
+  for (const char* element : {"H8", "H8_mean_dilatation", "T4", "T10", "H20", "H27"})
     for (const auto& [strain, material] :
          {std::pair{"small", linear()}, {"small", metal()}, {"finite", rubber()}, {"finite", metal()}}) {
       SCOPED_TRACE(std::string(element) + ", " + strain + ", " + material.dump());
@@ -276,6 +276,7 @@ TEST(Verify, HoldsForSolidBodiesInSpace) {
       expect_holds(solve(solid(strain, "H8", material, obstacle, true)));
       expect_holds(solve(solid(strain, "T4", material, obstacle, true), "penalty"));
     }
+  for (const char* element : {"T10", "H20", "H27"}) expect_holds(solve(solid("finite", element, rubber(), ball, true)));
 }
 
 TEST(Verify, HoldsForSolidBodiesThatSlideOnOneAnother) {
@@ -287,6 +288,14 @@ TEST(Verify, HoldsForSolidBodiesThatSlideOnOneAnother) {
         expect_holds(solve(on_barrel(element, surface), method));
       }
   expect_holds(solve(on_barrel("H8", "faceted"), "penalty"));
+  for (const char* element : {"T10", "H20", "H27"}) {
+    json scene = on_barrel(element, "smooth");
+    scene["bodies"]["block"]["element"] = element;
+    scene["bodies"]["block"]["mesh"]["extruded"]["mesh"]["quad"]["cells"] = json::parse("[3, 1]");
+    scene["bodies"]["block"]["mesh"]["extruded"]["cells"] = 2;
+    SCOPED_TRACE(element);
+    expect_holds(solve(scene));
+  }
 }
 
 /// Forces of segments act where each side is; between curved sides these are two places.
