@@ -156,7 +156,7 @@ FAULTS = [
     # responses, objectives
     ("half width of an ellipse with 3 for 4", "core/model/response.hpp", "T(rings ? 2.5 : <<<4.0>>>)", "3.0"),
     ("moment without its second arm", "core/model/response.hpp",
-     "- <<<(x[1] - numbers(response.about[1])) * force[0]>>>;", "T(0)"),
+     "- <<<(x[j] - numbers(response.about[j])) * force[i]>>>;", "T(0)"),
     ("contact force without the derivative of its area", "core/model/response.hpp",
      "force -= <<<geometry.area>>> * state.contact.traction", "T(value(geometry.area))"),
     ("mean without areas", "core/model/response.hpp", "weights.push_back(<<<area_in(state.contact, slots, p)>>>);", "T(1)"),

@@ -8,11 +8,11 @@ namespace stickslip {
 
 std::string grade_fault(const std::vector<Grading>& grade, const std::vector<std::array<const char*, 2>>& directions) {
   std::vector<std::string> sides;
-  for (const auto& [low, high] : directions) {
-    const auto count = std::count_if(grade.begin(), grade.end(),
-                                     [&](const Grading& g) { return g.towards == low || g.towards == high; });
-    if (count > 1) return std::string("grade is towards ") + low + " or " + high + ", not both";
-    sides.insert(sides.end(), {low, high});
+  for (const auto& ends : directions) {
+    const auto is_among = [&](const Grading& g) { return g.towards == ends[0] || g.towards == ends[1]; };
+    if (std::count_if(grade.begin(), grade.end(), is_among) > 1)
+      return std::string("grade is towards ") + ends[0] + " or " + ends[1] + ", not both";
+    sides.insert(sides.end(), ends.begin(), ends.end());
   }
   for (const auto& [towards, ratio] : grade) {
     if (!(ratio.value > 0)) return "grade must be greater than 0";

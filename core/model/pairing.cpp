@@ -295,8 +295,10 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   }
   const bool has_facets =
       pairing.obstacle < 0 || std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape);
-  const bool slides = model.scene.finite_strain || contact.smoothing != Smoothing::none || !contact.group.empty() ||
-                      contact.is_of_itself();
+  // (pairs of "between" are whole boundaries: in the plane their corners are places of a curve)
+  const bool is_pair = model.dimension == 2 && !contact.group.empty();
+  const bool slides =
+      model.scene.finite_strain || contact.smoothing != Smoothing::none || is_pair || contact.is_of_itself();
   if (has_facets && slides && !contact.segment)
     return with_dimension(model.dimension, [&]<int D>() { pair_along_surface<D>(model, points, pairing); });
   if (!contact.segment) return pair_nodes(model, points, pairing);

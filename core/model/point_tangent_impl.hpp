@@ -137,7 +137,7 @@ Eigen::MatrixXd jets_of(const ContactInput<T>& input, int p, const Facing& facin
     });
     for (const auto& row : sums.rowwise()) add(row);
   };
-  add_place(facing.patch, facing.at);
+  if (facing.patch != no_patch) add_place(facing.patch, facing.at);  // (what faces nothing bears nothing)
   if (const auto last = earlier(input, p); point.foot >= 0 && last.patch != no_patch)
     add_place(last.patch, stored_place<3>(input.model, point, last.patch, last.foot).at);
   return basis.topRows(count);

@@ -229,7 +229,8 @@ void read_key(const KeyAt& at, std::vector<Grading>& to, const Grade<n>& how) {
   if (!given || !given->is_object({{}, {how.sides.begin(), how.sides.end()}})) return;
   for (const char* side : how.sides)
     if (const auto ratio = given->find(side)) to.push_back({side, at.reading.number(*ratio, positive)});
-  if (to.empty()) given->error("is empty; must name a side: " + listed({how.sides.begin(), how.sides.end()}));
+  if (given->value().empty())
+    given->error("is empty; must name a side: " + listed({how.sides.begin(), how.sides.end()}));
 }
 
 inline Schema kind_of(const Number&, const InRange& how) { return schema_of(how.range); }

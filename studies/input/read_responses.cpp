@@ -85,7 +85,11 @@ void read_component(const JsonNode& node, const JsonNode& component, const Respo
   };
   read("about", response.about,
        in_space ? "a point [x, y, z] of the axis of the moment" : "the point [x, y] that the moment is about");
-  if (!in_space) return;
+  if (!in_space) {
+    if (const auto axis = node.find("axis"))
+      axis->error_at_key("an axis needs the space solid; in a plane space a moment is about a point");
+    return;
+  }
   read("axis", response.moment_axis, "the direction [x, y, z] of the axis of the moment");
   const auto& axis = response.moment_axis;
   if (!axis.empty() && std::all_of(axis.begin(), axis.end(), [](const Number& n) { return n.value == 0; }))

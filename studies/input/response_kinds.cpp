@@ -95,9 +95,8 @@ constexpr const char* key_schemas = R"json({
 
 /// Schema of one kind of response, with the keys that it has in the plane.
 Schema kind_schema(const ResponseKind& kind, const Schema& schemas) {
-  Keys keys = keys_of(kind, 2);
+  const Keys keys = keys_of(kind, 2);
   const bool moment = has_moment(kind);
-  if (moment) keys.optional.emplace_back("axis");
   Schema properties = Schema::object();
   for (const auto* list : {&keys.required, &keys.optional})
     for (const auto& key : *list) properties[key] = schemas.at(key);
@@ -149,7 +148,7 @@ Keys keys_of(const ResponseKind& kind, int dimension) {
   else if (kind.sampled)
     keys.optional.emplace_back("at");
   if (has_moment(kind) || kind.kind == Response::Kind::contact_half_width) keys.optional.emplace_back("about");
-  if (has_moment(kind) && dimension == 3) keys.optional.emplace_back("axis");
+  if (has_moment(kind)) keys.optional.emplace_back("axis");
   return keys;
 }
 

@@ -349,12 +349,13 @@ TEST(SolidBodies, DoNotDependOnTheNamesOfTheAxes) {
       const auto one = scenes::run(scene, method), other = scenes::run(turned(scene), method);
       ASSERT_TRUE(is_converged(one.trajectory.status)) << one.trajectory.message;
       ASSERT_EQ(one.trajectory.increments.size(), other.trajectory.increments.size()) << other.trajectory.message;
-      // (rounding decides the last iterations of Uzawa's tight tolerance: counts are those of the default)
-      const bool is_uzawa = std::holds_alternative<UzawaAL>(method);
+      // (Rounding decides the last iterations of Uzawa's tight tolerance: counts are those of the default. Springs make
+      // a tenth of the tolerance of it, so that the last iteration of a step may be one more.)
+      const bool is_uzawa = std::holds_alternative<UzawaAL>(method), springs = std::holds_alternative<Penalty>(method);
       const auto count = [&](const scenes::Solved& tight, const Scene& s) {
-        return (is_uzawa ? scenes::run(s, UzawaAL{}) : tight).trajectory.counters.newton;
+        return static_cast<double>((is_uzawa ? scenes::run(s, UzawaAL{}) : tight).trajectory.counters.newton);
       };
-      EXPECT_EQ(count(one, scene), count(other, turned(scene))) << name_of(method);
+      EXPECT_NEAR(count(one, scene), count(other, turned(scene)), springs ? 1 : 0) << name_of(method);
       const auto value = [](const scenes::Solved& s, const std::string& name) { return s.value(name); };
       const auto derivative = [](const scenes::Solved& s, Eigen::Index r, Eigen::Index j) {
         return s.gradients.of_responses.back()(r, j);
@@ -438,7 +439,7 @@ TEST(SolidBodies, HaveTheDerivativesOfTheOracleInBothModes) {
 /// Few cells too: those of quadratic elements have many nodes.
 Scene few_cells(Scene s) {
   for (auto& body : s.bodies)
-    for (int& along : std::get<BoxMesh>(body.mesh).cells) along = std::min(along, 2);
+    for (int& along : std::get<BoxMesh>(body.mesh).cells) along = along > 2 ? 2 : along;
   return few_steps(std::move(s));
 }
 

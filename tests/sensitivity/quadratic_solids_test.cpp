@@ -39,8 +39,7 @@ TEST(QuadraticSolids, HaveUniformStressUnderTractions) {
   for (const char* element : elements) {
     Scene s = block(element, LinearElastic{1000.0, 0.3}, {3, 2, 2});
     auto& box = std::get<BoxMesh>(s.bodies[0].mesh);
-    box.grade_towards = "right";
-    box.grade = 3.0;
+    box.grade = {{"right", 3.0}};
     s.supports = {held("block.left", "x"), held("block.front", "y"), held("block.bottom", "z")};
     s.loads = {scenes::traction("block.top", {0.0, 0.0, -10.0}),
                scenes::traction("block.right", {3.0, 0.0, 0.0}),

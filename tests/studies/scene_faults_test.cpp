@@ -93,7 +93,7 @@ std::vector<Broken> broken_solid() {
        "H8, H8_mean_dilatation, H20, H27, T4 or T10"},
       {"solid_mesh_of_the_plane", s, R"({"box": {"min": [0, 0, 0], "max": [4, 2, 2], "cells": [4, 2, 2]}})",
        R"({@"half_disk": {"center": [0, 0], "radius": 1, "cells": [4, 4]}})", "/bodies/block/mesh/half_disk",
-       "allowed: box, half_ball, extruded, point, line, arc, gmsh"},
+       "allowed: box, half_ball, ball, extruded, point, line, arc, gmsh"},
       {"solid_cells_of_the_plane", s, R"([4, 2, 2]}})", R"(@[4, 2]}})", "/bodies/block/mesh/box/cells",
        "an array of 3 whole numbers >= 1"},
       {"half_ball_in_the_plane", finite_scene, box,

@@ -202,10 +202,9 @@ TEST_P(ShippedScene, HoldsByEachMethod) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Verify, ShippedScene,
-                         testing::Values("ball_on_plane", "belt", "dented_metal", "dragged_ball", "four_balls",
-                                         "greco_plate", "ironing", "plastic_bar", "press_fit", "pressed_block",
-                                         "pull_out", "slider", "slope", "snap", "solid_ironing", "stop", "stop_bars",
-                                         "tractrix", "truss", "twisted_fit"));
+                         testing::Values("ball_on_plane", "belt", "dented_metal", "dragged_ball", "greco_plate",
+                                         "ironing", "plastic_bar", "press_fit", "pressed_block", "pull_out", "slider",
+                                         "slope", "snap", "solid_ironing", "stop", "stop_bars", "tractrix", "truss"));
 
 TEST(Verify, HoldsForEachElementMaterialAndSpace) {
   for (const char* element : {"Q4", "Q8", "T3", "T6", "Q4_mean_dilatation"})

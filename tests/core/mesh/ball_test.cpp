@@ -93,11 +93,11 @@ TEST(Ball, ConvergesToItsVolumeAndItsAreaWithTheSquareOfTheCells) {
 
 TEST(Ball, HasMiddlesOnItsSpheres) {
   for (const char* element : {"T10", "H20", "H27"})
-    for (const double inner : {0.0, 6.0}) {
-      const BallMesh of = ball(3, 2, inner);
+    for (const double inner : {0.0, 4.0}) {
+      const BallMesh of = ball(4, 2, inner);
       const Mesh mesh = make_mesh(of, element, 3);
       const Points<double> points = make_points(of, mesh, Numbers<double>{});
-      EXPECT_FALSE(first_inverted_element(mesh, points)) << element;
+      EXPECT_EQ(first_inverted_element(mesh, points).value_or(-1), -1) << element << ", " << inner;
       for (const auto& [name, side] : mesh.sides)
         for (const int node : side.nodes)
           EXPECT_NEAR((points.col(node) - middle).norm(), name == "surface" ? 8 : inner, 8 * 8 * eps) << element;

@@ -87,7 +87,7 @@ TEST(MeshFaults, ASeamThatIsOpenInPartIsNoted) {
 }
 
 TEST(MeshFaults, AFineMeshHasNoNodesAtOnePlace) {
-  BoxMesh box{{0.0, 0.0}, {2.0, 1.0}, {40, 20}, "bottom", 1e6};
+  BoxMesh box{{0.0, 0.0}, {2.0, 1.0}, {40, 20}, {{"bottom", 1e6}}};
   const Mesh mesh = make_mesh(box, "", 2);
   const auto points = make_points<double>(box, mesh, Numbers<double>{});
   EXPECT_FALSE(nodes_at_one_place(mesh, points));
