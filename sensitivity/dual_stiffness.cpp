@@ -6,6 +6,18 @@
 #include "core/model/element_nodes.hpp"
 
 namespace stickslip {
+namespace {
+
+/// Numbers of dofs that an element has: of bars and continua, in the plane and in space.
+using DofCounts = std::integer_sequence<int, 4, 6, 8, 12, 16, 24, 30, 60, 81>;
+
+/// Calls f.operator()<count>() with the count that is n; false if there is none.
+template <int... counts, class F>
+bool call_with(std::integer_sequence<int, counts...>, int n, F&& f) {
+  return ((n == counts && (f.template operator()<counts>(), true)) || ...);
+}
+
+}  // namespace
 
 DualStiffness::DualStiffness(const Model& model, const Slots<Direction>& slots, const ElementLists& lists)
     : turns_(!model.framed.empty()) {
@@ -63,37 +75,9 @@ void DualStiffness::add_forces(const Vector<Direction>& u, Vector<Direction>& fo
                         forces);
     entry += count * (count + 1) / 2;
   };
-  for (std::size_t e = 0; e + 1 < start_.size(); ++e) switch (start_[e + 1] - start_[e]) {
-      case 4:
-        add.template operator()<4>(e);
-        break;
-      case 6:
-        add.template operator()<6>(e);
-        break;
-      case 8:
-        add.template operator()<8>(e);
-        break;
-      case 12:
-        add.template operator()<12>(e);
-        break;
-      case 16:
-        add.template operator()<16>(e);
-        break;
-      case 24:
-        add.template operator()<24>(e);
-        break;
-      case 30:
-        add.template operator()<30>(e);
-        break;
-      case 60:
-        add.template operator()<60>(e);
-        break;
-      case 81:
-        add.template operator()<81>(e);
-        break;
-      default:
-        throw std::logic_error("DualStiffness: an element of a number of dofs that is not known");
-    }
+  for (std::size_t e = 0; e + 1 < start_.size(); ++e)
+    if (!call_with(DofCounts(), start_[e + 1] - start_[e], [&]<int count>() { add.template operator()<count>(e); }))
+      throw std::logic_error("DualStiffness: an element of a number of dofs that is not known");
 }
 
 long DualStiffness::bytes() const {

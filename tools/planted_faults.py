@@ -96,7 +96,8 @@ FAULTS = [
     ("bodies that float tried at rest too soon", "methods/rescue/motion.hpp",
      "return <<<alpha>>> * largest_nodal_norm(way", "0"),
     ("no tie length", "core/model/slave_point.cpp", "point.tie_length = <<<8>>> * unit_roundoff", "0"),
-    ("facing nodes that look the same way", "core/model/pairing.cpp", "points).dot(normal(f)) < <<<0>>>;", "1e300"),
+    ("facing nodes that look the same way", "core/contact/surfaces.hpp", "dot(outward) < <<<-at_right_angle>>> *", "1"),
+    ("a sole that goes on past its corner", "core/model/pairing.cpp", "if (<<<closest->second >= 0>>> && master", "false"),
     # bodies, loads, supports
     ("plane stress as plane strain", "core/solids/linear_elastic.hpp",
      "space == Space::plane_stress) lame = <<<lame_of_plane_stress(lame, shear)>>>;", "T(lame)"),

@@ -4,6 +4,8 @@
 #include <limits>
 #include <map>
 
+#include "core/contact/surfaces.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -73,15 +75,18 @@ std::array<Vec<double, 3>, 4> FaceSearch::corners(const FacePlace& face) const {
   return corners_of<double>(face, [this](int node) -> Vec<double, 3> { return points_.col(node); });
 }
 
+Vec<double, 3> FaceSearch::across(int face) const {
+  const auto corner = corners(faces_[face]);
+  return area_vector<double>(faces_[face].corners, [&](int k) { return corner[k]; });
+}
+
 std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const {
   std::vector<Near> near;  // as near as the nearest so far, and ties
   double least = std::numeric_limits<double>::infinity();
   const auto skips = [&](const Bounds<3>& box) { return box.distance(x) > least + band_; };
   boxes_.visit(x, skips, [&](int f) {
-    const auto corner = corners(faces_[f]);
-    const auto across = [&] { return area_vector<double>(faces_[f].corners, [&](int k) { return corner[k]; }); };
-    if (outward != Vec<double, 3>::Zero() && across().dot(outward) >= 0) return;
-    near.push_back({nearest_of_face(faces_[f], corner, x), f});
+    if (outward != Vec<double, 3>::Zero() && across(f).dot(outward) >= 0) return;
+    near.push_back({nearest_of_face(faces_[f], corners(faces_[f]), x), f});
     least = std::min(least, near.back().distance);
   });
   std::erase_if(near, [&](const Near& at) { return at.distance > least + band_; });
@@ -91,20 +96,31 @@ std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x, const
   return near;
 }
 
-std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x) const {
-  const auto near = nearest(x, Vec<double, 3>::Zero());
-  if (is_past_border(near, x)) return {};
+std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const {
+  auto near = nearest(x, Vec<double, 3>::Zero());
+  const auto away = std::stable_partition(near.begin(), near.end(), [&](const Near& at) {
+    return outward == Vec<double, 3>::Zero() || opposes<3>(across(at.face), outward);
+  });
+  const std::vector<Near> ends(away, near.end());
+  near.erase(away, near.end());
+  if (is_past_border(near, ends, x)) return {};
   std::vector<FacePlace> places;
   for (const auto& at : near) places.push_back(at.place);
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.nodes < b.nodes; });
   return places;
 }
 
-bool FaceSearch::is_past_border(const std::vector<Near>& places, const Vec<double, 3>& x) const {
+bool FaceSearch::is_past_border(const std::vector<Near>& places, const std::vector<Near>& ends,
+                                const Vec<double, 3>& x) const {
+  const auto has = [](const FacePlace& face, int node) {
+    return std::find(face.nodes.begin(), face.nodes.begin() + face.corners, node) != face.nodes.begin() + face.corners;
+  };
   for (const auto& near : places) {
     const auto corner = corners(near.place);
     for (int k = 0; k < near.place.corners; ++k) {
-      if (!border_[near.face][k]) continue;
+      const int from_node = near.place.nodes[k], to_node = near.place.nodes[(k + 1) % near.place.corners];
+      const auto is_beyond = [&](const Near& end) { return has(end.place, from_node) && has(end.place, to_node); };
+      if (!border_[near.face][k] && std::none_of(ends.begin(), ends.end(), is_beyond)) continue;
       const Vec<double, 3> along = (corner[(k + 1) % near.place.corners] - corner[k]).normalized();
       const Vec<double, 3> from = near.position - corner[k];
       if ((from - from.dot(along) * along).norm() > band_) continue;  // (not on this edge)

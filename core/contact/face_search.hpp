@@ -26,13 +26,15 @@ class FaceSearch {
   ///            over; if it is zero, none is
   std::vector<Near> nearest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const;
 
-  /// The closest place of the surface to x, on each face that has it; none if x projects past a border of the surface.
-  /// Of places that are equally close it is one inside of a face, then that of least x, y, z: geometry alone decides.
-  std::vector<FacePlace> closest(const Vec<double, 3>& x) const;
+  /// The closest place of the surface to x, on each face that has it and opposes `outward`, if that is not zero; none
+  /// if x projects past a border of the surface, or past an edge beyond which it does not oppose. Of places that are
+  /// equally close it is one inside of a face, then that of least x, y, z: geometry alone decides.
+  std::vector<FacePlace> closest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const;
 
  private:
-  /// Whether x projects past a border of the surface on which its closest places are.
-  bool is_past_border(const std::vector<Near>& places, const Vec<double, 3>& x) const;
+  /// Whether x projects past an edge at which `places` are, and which a border or one of `ends` is beyond.
+  bool is_past_border(const std::vector<Near>& places, const std::vector<Near>& ends, const Vec<double, 3>& x) const;
+  Vec<double, 3> across(int face) const;  ///< its area vector
   std::array<Vec<double, 3>, 4> corners(const FacePlace& face) const;
 
   Points<double> points_;

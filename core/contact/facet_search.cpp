@@ -9,7 +9,7 @@
 namespace stickslip {
 namespace {
 
-/// Share of a facet's length by which a projection may lie past the free end of the side. Why: coordinates of a mesh
+/// Share of a facet's length by which a projection may lie past the end of the side. Why: coordinates of a mesh
 /// file are rounded, and that rounding must not decide whether a node at the end of its master faces it.
 constexpr double past_free_end = 1e-6;
 
@@ -25,6 +25,8 @@ bool precedes(const Foot& a, const Foot& b) {
   if (a_inside != b_inside) return a_inside;
   return a.position[0] < b.position[0] || (a.position[0] == b.position[0] && a.position[1] < b.position[1]);
 }
+
+bool is_past_end(const FacetPlace& place) { return place.xi < -past_free_end || place.xi > 1 + past_free_end; }
 
 }  // namespace
 
@@ -55,8 +57,7 @@ std::optional<ClosestPoint> closest_point(const Points<double>& points, const st
   const int vertex = facets[best][end ? 1 : 0];
   for (int f : among)
     if (facets[f][end ? 0 : 1] == vertex) return end ? ClosestPoint{best, f} : ClosestPoint{f, best};
-  const bool past_the_end = foot.xi < -past_free_end || foot.xi > 1 + past_free_end;
-  return past_the_end ? std::nullopt : std::optional<ClosestPoint>(ClosestPoint{best, -1});
+  return is_past_end(foot) ? std::nullopt : std::optional<ClosestPoint>(ClosestPoint{best, -1});
 }
 
 FacetSearch::FacetSearch(const Points<double>& points, const std::vector<std::vector<int>>& facets)
@@ -130,6 +131,10 @@ std::optional<ClosestPoint> FacetSearch::closest(const Vec<double, 2>& x) const 
   const double near = nearest(x).distance + ties * band_;
   const auto among = facets_but([&](const Bounds<2>& box) { return box.distance(x) > near; });
   return closest_point(points_, facets_, among, x);
+}
+
+bool FacetSearch::is_past_end(int facet, const Vec<double, 2>& x) const {
+  return stickslip::is_past_end(nearest_of_facet(end_of(facet, 0), end_of(facet, 1), x));
 }
 
 }  // namespace stickslip

@@ -67,6 +67,8 @@ class FacetSearch {
   Nearest nearest(const Vec<double, 2>& x, const std::function<bool(int)>& counts) const;
   /// The closest point of the side, as closest_point() finds it among all facets.
   std::optional<ClosestPoint> closest(const Vec<double, 2>& x) const;
+  /// Whether x projects past an end of a facet, by more than a mesh file rounds.
+  bool is_past_end(int facet, const Vec<double, 2>& x) const;
 
  private:
   Vec<double, 2> end_of(int facet, int end) const { return points_.col(facets_[facet][end]).head<2>(); }

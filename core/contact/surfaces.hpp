@@ -117,6 +117,14 @@ Vec<T, D> slave_normal(const std::vector<std::vector<int>>& facets, const Points
   return n;
 }
 
+/// Whether a master of normal `across` opposes a slave side at small strain. Lengths are any. One at a right angle to
+/// it does not, whatever rounding makes of the angle: the side of a block does not oppose the floor that it stands on.
+template <int D>
+bool opposes(const Vec<double, D>& across, const Vec<double, D>& outward) {
+  constexpr double at_right_angle = 1e-6;  // as coordinates of a mesh file are rounded
+  return across.dot(outward) < -at_right_angle * across.norm() * outward.norm();
+}
+
 /// Sets the normal to the bisector of the master normal and the reversed slave normal, and the tangents to match.
 /// `slave_normal`: outward, of any length. The gap is left to the caller: it is the distance between slave node and
 /// master point along the new normal.

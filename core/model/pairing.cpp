@@ -29,8 +29,8 @@ struct Facets {
   Vec<double, 2> place(int node) const { return points.col(node).head<2>(); }
 };
 
-/// Leaves a slave node at a corner of its side the facets that face a master facet of normal `across`, any length:
-/// those within 60 degrees. If none is, it keeps all.
+/// Leaves a slave node at a corner of its side the facets that face a master of normal `across`, any length: those
+/// within 60 degrees. If none is, it keeps all. Its normal, which the bisector takes, is of these.
 template <int D>
 void keep_facets_that_face(const Points<double>& points, const Vec<double, D>& across, ContactPoint& point) {
   constexpr double within = 0.5;
@@ -51,14 +51,15 @@ bool find_corners(const Points<double>& points, const Facets& master, ContactPoi
     const Vec<double, 2> tau = master.place(master.facets[f][1]) - master.place(master.facets[f][0]);
     return Vec<double, 2>(tau[1], -tau[0]);
   };
-  const auto opposes = [&](int f) {
-    return !point.shares_normal || slave_normal<2>(point.area_facets, points).dot(normal(f)) < 0;
+  const auto is_faced = [&](int f) {
+    return !point.shares_normal || opposes<2>(normal(f), slave_normal<2>(point.area_facets, points));
   };
   const bool deformable = point.obstacle < 0;
-  const bool first = opposes(closest->facet), second = closest->second >= 0 && opposes(closest->second);
+  const bool first = is_faced(closest->facet), second = closest->second >= 0 && is_faced(closest->second);
   if (!first && !second) return false;
-  if (closest->second < 0 || first != second) {  // at a corner only one of its facets may oppose the slave side
+  if (closest->second < 0 || first != second) {  // at a corner the master may end: only one of its facets opposes
     const int facet = first ? closest->facet : closest->second;
+    if (closest->second >= 0 && master.search.is_past_end(facet, x)) return false;
     if (point.shares_normal) keep_facets_that_face<2>(points, normal(facet), point);
     point.master = ContactPoint::Master::facet;
     point.corners = master.facets[facet];
@@ -68,6 +69,8 @@ bool find_corners(const Points<double>& points, const Facets& master, ContactPoi
   point.master = ContactPoint::Master::vertex;
   const auto &before = master.facets[closest->facet], &after = master.facets[closest->second];
   point.corners = {before[0], before[1], after[1]};
+  if (point.shares_normal)
+    keep_facets_that_face<2>(points, normal(closest->facet).normalized() + normal(closest->second).normalized(), point);
   if (!deformable) return true;
   point.nodes.push_back(before[1]);
   const Vec<double, 2> v = master.place(before[1]);
@@ -80,15 +83,11 @@ bool find_corners(const Points<double>& points, const Facets& master, ContactPoi
 
 /// Sets the faces that a slave node faces, of those that oppose its own side. False if it faces none.
 bool find_faces(const Points<double>& points, const FaceSearch& master, ContactPoint& point) {
-  const Vec<double, 3> x = points.col(point.nodes[0]);
-  point.faces = master.closest(x);
+  const Vec<double, 3> own = slave_normal<3>(point.area_facets, points);
+  point.faces = master.closest(points.col(point.nodes[0]), point.shares_normal ? own : Vec<double, 3>::Zero());
   const auto normal = [&](const FacePlace& face) {
     return slave_normal<3>({{face.nodes.begin(), face.nodes.begin() + face.corners}}, points);
   };
-  if (point.shares_normal) {
-    const Vec<double, 3> own = slave_normal<3>(point.area_facets, points);
-    std::erase_if(point.faces, [&](const FacePlace& face) { return own.dot(normal(face)) >= 0; });
-  }
   if (point.faces.empty()) return false;
   Vec<double, 3> across = Vec<double, 3>::Zero();
   for (const auto& face : point.faces) across += normal(face).normalized();
@@ -169,6 +168,15 @@ Facing facing_of(const SurfaceSearch<D>& search, const MasterSurface& master, co
   return facing;
 }
 
+/// Normal of the facet of a patch, of any length.
+template <int D>
+Vec<double, D> normal_of_patch(const Points<double>& points, const MasterSurface& master, int patch) {
+  const auto& of = master.patches<D>()[patch];
+  std::vector<int> corners;
+  for (int k = 0; k < of.corners; ++k) corners.push_back(master.nodes[of.corner(k)]);
+  return slave_normal<D>({corners}, points);
+}
+
 /// Contact along a surface: each slave node against the place of it that it faces. At finite strain a node that faces
 /// nothing yet is a point too.
 template <int D>
@@ -191,6 +199,8 @@ void pair_along_surface(Model& model, const Points<double>& points, const Pairin
     const bool faces = point.facing.patch != no_patch;
     if (!faces && !model.scene.finite_strain) continue;
     point.shares_normal = !model.scene.finite_strain && pairing.obstacle < 0 && has_side;
+    if (faces && point.shares_normal)
+      keep_facets_that_face<D>(points, normal_of_patch<D>(points, master, point.facing.patch), point);
     if (faces && pairing.obstacle < 0)
       for (int vertex : master.vertices(point.facing.patch))
         if (vertex != no_vertex) point.nodes.push_back(master.nodes[vertex]);

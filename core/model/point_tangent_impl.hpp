@@ -51,20 +51,40 @@ struct FixedInput {
   Vec<Probe, Tangents> placement;
 };
 
-/// Range of displacements seeded in one sweep, before the multipliers.
-struct Seeded {
-  int first, count;
-};
+/// Row r of t - lambda.
+template <class Probe, int Tangents>
+Probe row_of(const Traction<Probe, Tangents>& traction, const Traction<Probe, Tangents>& lambda, int r) {
+  return r == 0 ? traction.normal - lambda.normal : traction.tangential[r - 1] - lambda.tangential[r - 1];
+}
 
-/// Sets the derivatives of the rows A (t - lambda) by the seeded displacements and by multipliers. `area`: A.
-template <class T, class Probe, int Tangents>
-void take_rows(const Traction<Probe, Tangents>& traction, const Traction<Probe, Tangents>& lambda, const T& area,
-               Seeded seeded, PointTangent<T>& tangent) {
+/// Evaluates a point once, at displacements with derivatives, and takes the tangent's columns that these are of.
+///
+///   displacement  place -> displacement in the scalar Probe
+///   of_lambda     the first of the directions that the multiplier is seeded in
+///   faced         nodes that have forces
+///   spread        (x, row): writes the derivatives of x by the displacements into a row
+template <class T, int D, int Tangents, class Probe, class Displacement, class Spread>
+void sweep(const ContactInput<T>& input, int p, const Facing& facing, const FixedInput<Probe, T, Tangents>& fixed,
+           const Displacement& displacement, const Vector<T>& multiplier, int of_lambda, ContactState state, int faced,
+           Spread&& spread, PointTangent<T>& tangent) {
   constexpr int C = 1 + Tangents;
+  const Positions<Probe, T, Displacement> positions{input.model, input.slots, displacement, input.time};
+  const auto at = place_point<D>(positions, input.model.points[p], facing, earlier(input, p));
+  const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, of_lambda);
+  const auto outcome =
+      point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed.placement, fixed.rho, fixed.friction, 0, &state);
+  const Vec<Probe, D> force = point_force<Probe, D, Tangents>(at.geometry, outcome.traction);
+  for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
+    for (int i = 0; i < D; ++i) {
+      const Probe share = at.geometry.weights[n] * force[i];
+      spread(share, tangent.force_w.row(D * n + i));
+      for (int c = 0; c < C; ++c) tangent.force_l(D * n + i, c) = share.d[of_lambda + c];
+    }
+  const T& area = input.slots.geometry[p].area;
   for (int r = 0; r < C; ++r) {
-    const Probe row = r == 0 ? traction.normal - lambda.normal : traction.tangential[r - 1] - lambda.tangential[r - 1];
-    for (int j = 0; j < seeded.count; ++j) tangent.row_w(r, seeded.first + j) = area * row.d[j];
-    for (int c = 0; c < C; ++c) tangent.row_l(r, c) = area * row.d[seeded.count + c];
+    const Probe row = area * row_of(outcome.traction, lambda, r);
+    spread(row, tangent.row_w.row(r));
+    for (int c = 0; c < C; ++c) tangent.row_l(r, c) = row.d[of_lambda + c];
   }
 }
 
@@ -171,41 +191,23 @@ PointTangent<T> tangent_by_jets(const ContactInput<T>& input, int p, const Facin
         row[D * k + i] = sum;
       }
   };
-  const FixedInput<Probe, T, Tangents> fixed_input(input, p);
-  const Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement, input.time};
-  const auto at = place_point<D>(positions, input.model.points[p], facing, earlier(input, p));
-  const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, seeds);
-  const auto outcome = point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
-                                                            fixed_input.friction, 0, &state);
-  const Vec<Probe, D> force = point_force<Probe, D, Tangents>(at.geometry, outcome.traction);
   const auto count = static_cast<Eigen::Index>(D * places.size());
   tangent.force_w = Matrix<T>::Constant(count, count, T(0));
   tangent.force_l = Matrix<T>::Constant(count, C, T(0));
-  for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
-    for (int i = 0; i < D; ++i) {
-      const Probe share = at.geometry.weights[n] * force[i];
-      spread(share, tangent.force_w.row(D * n + i));
-      for (int c = 0; c < C; ++c) tangent.force_l(D * n + i, c) = share.d[seeds + c];
-    }
   tangent.row_w.resize(C, count);
   tangent.row_l.resize(C, C);
-  const T& area = input.slots.geometry[p].area;
-  for (int r = 0; r < C; ++r) {
-    const Probe row = area * (r == 0 ? outcome.traction.normal - lambda.normal
-                                     : outcome.traction.tangential[r - 1] - lambda.tangential[r - 1]);
-    spread(row, tangent.row_w.row(r));
-    for (int c = 0; c < C; ++c) tangent.row_l(r, c) = row.d[seeds + c];
-  }
+  sweep<T, D, Tangents, Probe>(input, p, facing, {input, p}, displacement, multiplier, seeds, state, faced, spread,
+                               tangent);
   return tangent;
 }
 
-/// Tangent by the displacements of the nodes at the places `of`, of which the first `faced` have forces, `at_once` dofs
-/// in one sweep. `facing`: what the point faces of its surface.
-template <class T, int D, int Tangents, int at_once>
+/// Tangent of a point of the plane by the displacements of the nodes at the places `of`, of which the first `faced`
+/// have forces, `at_once` dofs in one sweep. `facing`: what the point faces of its surface.
+template <class T, int Tangents, int at_once>
 PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Facing& facing, std::vector<int> of,
                                   int faced, const Vector<T>& compact, const Vector<T>& multiplier,
                                   ContactState state) {
-  constexpr int C = 1 + Tangents;
+  constexpr int D = 2, C = 1 + Tangents;
   using Probe = Dual<at_once + C, T>;
   PointTangent<T> tangent;
   auto& places = tangent.places;
@@ -215,31 +217,23 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
   tangent.force_l = Matrix<T>::Constant(count, C, T(0));
   tangent.row_w.resize(C, count);
   tangent.row_l.resize(C, C);
-  const FixedInput<Probe, T, Tangents> fixed_input(input, p);
+  const FixedInput<Probe, T, Tangents> fixed(input, p);
   for (int first = 0; first < count; first += at_once) {
-    const Seeded seeded{first, std::min(at_once, count - first)};
+    const int seeded = std::min(at_once, count - first);
     const auto displacement = [&](int place) {
       const int k = D * static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin()) - first;
       Vec<Probe, D> u;
       for (int i = 0; i < D; ++i) {
         u[i] = Probe(compact[D * place + i]);
-        if (k >= 0 && k < seeded.count) u[i].d[k + i] = T(1);
+        if (k >= 0 && k < seeded) u[i].d[k + i] = T(1);
       }
       return u;
     };
-    const Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement, input.time};
-    const auto at = place_point<D>(positions, input.model.points[p], facing, earlier(input, p));
-    const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, seeded.count);
-    const auto outcome = point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
-                                                              fixed_input.friction, 0, &state);
-    const Vec<Probe, D> force = point_force<Probe, D, Tangents>(at.geometry, outcome.traction);
-    for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
-      for (int i = 0; i < D; ++i) {
-        const Probe share = at.geometry.weights[n] * force[i];
-        for (int j = 0; j < seeded.count; ++j) tangent.force_w(D * n + i, first + j) = share.d[j];
-        for (int c = 0; c < C; ++c) tangent.force_l(D * n + i, c) = share.d[seeded.count + c];
-      }
-    take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, seeded, tangent);
+    const auto spread = [&](const Probe& x, auto&& row) {
+      for (int j = 0; j < seeded; ++j) row[first + j] = x.d[j];
+    };
+    sweep<T, D, Tangents, Probe>(input, p, facing, fixed, displacement, multiplier, seeded, state, faced, spread,
+                                 tangent);
   }
   return tangent;
 }
@@ -255,18 +249,19 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
   if (state == ContactState::open) return detail::open_tangent(input, p, found);
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if (by_places) {
-      // 18: the slave node and four vertices each of this patch and of the last; 12: where these are neighbours.
       int faced = 0;
       auto places = detail::places_of_tangent(input, p, found, faced);
-      const auto tangent = [&]<int at_once>() {
-        return detail::tangent_by_places<T, D, Tangents, at_once>(input, p, found, std::move(places), faced, compact,
-                                                                  multiplier, state);
-      };
-      if constexpr (D == 2)
+      if constexpr (D == 2) {
+        const auto tangent = [&]<int at_once>() {
+          return detail::tangent_by_places<T, Tangents, at_once>(input, p, found, std::move(places), faced, compact,
+                                                                 multiplier, state);
+        };
+        // 18: the slave node and four vertices each of this patch and of the last; 12: where these are neighbours.
         return places.size() <= 6 ? tangent.template operator()<12>() : tangent.template operator()<18>();
-      else
+      } else {
         return detail::tangent_by_jets<T, Tangents>(input, p, found, std::move(places), faced, compact, multiplier,
                                                     state);
+      }
     }
     constexpr int C = 1 + Tangents;
     using Probe = Dual<D + C, T>;
@@ -301,7 +296,11 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
       for (int j = 0; j < D; ++j) tangent.force_w(i, j) = force[i].d[j];
       for (int c = 0; c < C; ++c) tangent.force_l(i, c) = force[i].d[D + c];
     }
-    detail::take_rows<T>(outcome.traction, lambda, input.slots.geometry[p].area, {0, D}, tangent);
+    for (int r = 0; r < C; ++r) {
+      const Probe row = input.slots.geometry[p].area * detail::row_of(outcome.traction, lambda, r);
+      for (int j = 0; j < D; ++j) tangent.row_w(r, j) = row.d[j];
+      for (int c = 0; c < C; ++c) tangent.row_l(r, c) = row.d[D + c];
+    }
     return tangent;
   });
 }

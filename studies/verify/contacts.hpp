@@ -96,14 +96,18 @@ class Contact {
 
   Seeker seeker(int node, const Field& x) const {
     Seeker seeker{node, x.col(node)};
+    const auto add = [&](const Vec3& normal) {
+      seeker.outward += normal;
+      seeker.normals.push_back(normal);
+    };
     double count = 0;
     for (const auto& facet : facets_) {
       if (!facet.has(node)) continue;
-      if (body_.solid()) seeker.outward += right_of(facet.chord(x));
+      if (body_.solid()) add(right_of(facet.chord(x)));
       seeker.size += (facet.chord(x).norm() - seeker.size) / ++count;
     }
     for (const auto& face : side_.edges)
-      if (faces_ && std::ranges::count(face, node) > 0) seeker.outward += area_vector(x, face);
+      if (faces_ && std::ranges::count(face, node) > 0) add(area_vector(x, face));
     return seeker;
   }
 

@@ -40,7 +40,7 @@ class Faces {
   }
 
   Foot foot(const Seeker& seeker) const {
-    const auto& [node, x, outward, size] = seeker;
+    const Vec3 &x = seeker.x, &outward = seeker.outward;
     auto near = closest(x, finite_ ? outward : Vec3(0, 0, 0));
     if (near.empty()) return {};
     const Near first = near[0];
@@ -54,7 +54,8 @@ class Faces {
     if (finite_) return foot;
     Vec3 normal = Vec3::Zero();
     for (const auto& at : near) normal += at.normal;
-    foot.normal = (normal.normalized() - outward.normalized()).normalized();  // the bisector of the two sides
+    normal.normalize();
+    foot.normal = (normal - seeker.against(normal).normalized()).normalized();  // the bisector of the two sides
     foot.gap = foot.normal.dot(x - foot.y);
     return foot;
   }
@@ -139,6 +140,13 @@ class Faces {
     return near;
   }
 
+  /// Whether a face does not oppose a side, if there is one. At small strain one at a right angle does not either.
+  bool looks_away(int p, const Vec3& outward) const {
+    const Vec3& across = boxes_[p][2];
+    const double share = finite_ ? 0 : -1e-6;
+    return !outward.isZero() && outward.dot(across) > share * outward.norm() * across.norm();
+  }
+
   /// Whether x is past an edge at which the faces that oppose a side end: at finite strain by more than a hundredth of
   /// a face.
   bool is_past_border(const Near& here, const Vec3& x, const Vec3& outward) const {
@@ -146,7 +154,7 @@ class Faces {
     const Eigen::VectorXd off = from_edges(patches_[p].sides(), s, t);
     for (int j = 0; j < off.size(); ++j) {
       const int other = patches_[p].beyond[j];
-      const bool ends = other == FacePatch::none || (finite_ && other >= 0 && outward.dot(boxes_[other][2]) > 0);
+      const bool ends = other == FacePatch::none || (other >= 0 && looks_away(other, outward));
       if (!ends || off[j] > (finite_ ? -0.01 : at_end)) continue;
       const Vec3 along = jet(p, {s, t}).rightCols<2>() * edge_along(patches_[p].sides(), j);
       if (finite_ || (x - here.y).dot(along.cross(here.normal).normalized()) > 1e-6 * size(p)) return true;
@@ -160,8 +168,8 @@ class Faces {
     for (const auto& at : finite_ ? std::exchange(near, {}) : std::vector<Near>{})
       if (const auto on = across(at.place.patch, {at.place.xi, at.place.eta}, Eigen::Matrix2d::Identity(), x))
         near.push_back(this->near(at.place.patch, *on, x));
+    if (!finite_) std::erase_if(near, [&](const Near& at) { return looks_away(at.place.patch, outward); });
     if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(at, x, outward); })) return false;
-    if (!finite_) std::erase_if(near, [&](const Near& at) { return outward.dot(at.normal) >= 0; });
     if (!finite_ || near.empty()) return !near.empty();
     std::ranges::sort(near, {}, [](const Near& at) { return at.place.patch; });
     const double most = std::ranges::max(near, {}, &Near::gap).gap - at_end * size(near[0].place.patch);

@@ -56,6 +56,14 @@ struct Seeker {
   Vec3 x = Vec3::Zero();
   Vec3 outward = Vec3::Zero();  ///< sum of the normals of its facets, times their lengths; zero: it has none
   double size = 0;              ///< mean length of its facets
+  std::vector<Vec3> normals;    ///< of which it is the sum
+  /// The sum of those that face a normal of the master within 60 degrees; of all if none does.
+  Vec3 against(const Vec3& across) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& own : normals)
+      if (own.dot(across) <= -0.5 * own.norm() * across.norm()) sum += own;
+    return sum.isZero(0) ? outward : sum;
+  }
 };
 
 /// A place of contact: a slave node, or the multiplier of one. Its weights are 1 of the slave, -N_i of the master. The
@@ -129,10 +137,9 @@ class Master {
     Foot foot{true, position(place), right_of(position(place, 1)).normalized(), 0, place};
     if (faced.patch < 0) return foot.away_from(x);
     for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(patches[place.patch].vertex[i], -N[i]);
-    if (frozen_ && !rigid()) foot.faces = !(outward.dot(foot.normal) > 0);  // else it looks away
     if (frozen_) share_vertex(seeker, foot);
     if (!scene_.finite && !rigid() && !outward.isZero())  // between two solids: the bisector of their normals
-      foot.normal = (foot.normal - outward.normalized()).normalized();
+      foot.normal = (foot.normal - seeker.against(foot.normal).normalized()).normalized();
     foot.gap = foot.normal.dot(x - foot.y);
     return foot;
   }
@@ -269,6 +276,13 @@ class Master {
     return !walls_.at(seeker.node).own[p] && against <= -0.5 * seeker.outward.norm() * line.tau.norm() && beside;
   }
 
+  /// Whether a patch looks against the slave's side at small strain, where one at a right angle does not.
+  bool opposes(const Seeker& seeker, int p) const {
+    const Vec3 across = right_of(line_of(p).tau);
+    return rigid() || seeker.outward.isZero() ||
+           seeker.outward.dot(across) < -1e-6 * seeker.outward.norm() * across.norm();
+  }
+
   /// The closest place of all patches, 0 <= xi <= 1; where two end in it, that on whose side of their bisector the
   /// point is.
   Place closest(const Seeker& seeker) const {
@@ -301,14 +315,22 @@ class Master {
     const Vec3& x = seeker.x;
     const auto facing = [&](const Seeker& point) {
       Place place = closest(point);
-      const bool end = place.xi == 1;
-      if (place.patch < 0 || (place.xi > 0 && !end) || patches[place.patch].goes_on(end)) return place;
+      if (place.patch < 0) return place;
+      bool end = place.xi > 1 - at_end;
+      const bool inside = place.xi > at_end && !end;
+      if (frozen_ && !opposes(point, place.patch)) {  // at a corner, the other patch of it may
+        const int other = inside ? -1 : patches[place.patch].beside[end];
+        if (other < 0 || !opposes(point, other)) return Place{};
+        end = !end;
+        place = {other, end ? 1.0 : 0.0};
+      }
+      if ((place.xi > 0 && place.xi < 1) || patches[place.patch].goes_on(end)) return place;
       for (int k = 0; k < 20; ++k) {
         const Vec3 off = x - position(place), slope = position(place, 1);
         place.xi += off.dot(slope) / (slope.squaredNorm() - off.dot(position(place, 2)));
       }
       const int other = patches[place.patch].beside[end];
-      const bool is_free = other < 0 || !may_face(point, other);
+      const bool is_free = other < 0 || !may_face(point, other) || (frozen_ && !opposes(point, other));
       const double past = end ? place.xi - 1 : -place.xi, still_faced = frozen_ ? 1e-6 : 0.01;  // of a facet
       return is_free && past > still_faced ? Place{} : place;
     };
@@ -323,7 +345,7 @@ class Master {
   void share_vertex(const Seeker& seeker, Foot& foot) const {
     const bool end = foot.place.xi > 1 - at_end;
     const int here = foot.place.patch, other = patches[here].beside[end];
-    if (other < 0 || (!end && foot.place.xi > at_end)) return;
+    if (other < 0 || (!end && foot.place.xi > at_end) || !opposes(seeker, other)) return;
     const int first = end ? here : other, second = end ? other : here;
     const Line before = line_of(first), after = line_of(second);
     foot.y = after.from;

@@ -102,8 +102,8 @@ struct Reference {
   Eigen::VectorXd weights = {};
 };
 
-/// L2, L3: edges. Without nodes: there is no such element.
-inline const Reference& reference(const std::string& element) {
+/// Of all elements by name; L2, L3: edges.
+inline const std::map<std::string, Reference>& references() {
   static const Field line{{0, 1, 0.5}, {0, 0, 0}, {0, 0, 0}},
       triangle{{0, 1, 0, 0.5, 0.5, 0}, {0, 0, 1, 0, 0.5, 0.5}, {0, 0, 0, 0, 0, 0}},
       square{{0, 1, 1, 0, 0.5, 1, 0.5, 0, 0.5}, {0, 0, 1, 1, 0, 0.5, 1, 0.5, 0.5}, {0, 0, 0, 0, 0, 0, 0, 0, 0}},
@@ -162,10 +162,15 @@ inline const Reference& reference(const std::string& element) {
          {3, 0, 4, 7, 11, 16, 15, 19, 20}},
         three,
         twenty_seven}}};
+  return all;
+}
+
+/// Without nodes: there is no such element.
+inline const Reference& reference(const std::string& element) {
   static const Reference none;
   const bool averages = element == "Q4_mean_dilatation" || element == "H8_mean_dilatation";
-  const auto found = all.find(averages ? element.substr(0, 2) : element);
-  return found == all.end() ? none : found->second;
+  const auto found = references().find(averages ? element.substr(0, 2) : element);
+  return found == references().end() ? none : found->second;
 }
 
 struct Body {

@@ -60,12 +60,7 @@ Solution quarter_ring(Space space, double nu, const std::string& element, int n)
   Scene s;
   s.space = space;
   s.legs = {{1, 1}};
-  RingMesh ring;
-  ring.center = {0.0, 0.0};
-  ring.inner = 1.0;
-  ring.outer = 2.0;
-  ring.to_angle = 90.0;
-  ring.cells = {n, 2 * n};
+  const RingMesh ring = scenes::quarter_ring(n);
   s.bodies = {{"ring", ring, LinearElastic{1000.0, nu}, element, 1.0}};
   s.supports = {held("ring.start", 'y'), held("ring.end", 'x')};
   s.loads = {scenes::traction("ring.inner", {0.0, 0.0})};

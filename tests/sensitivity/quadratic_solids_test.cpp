@@ -65,12 +65,7 @@ double tube_error(const std::string& element, int n) {
   Scene s;
   s.space = Space::solid;
   s.legs = {{1, 1}};
-  RingMesh ring;
-  ring.center = {0.0, 0.0};
-  ring.inner = 1.0;
-  ring.outer = 2.0;
-  ring.to_angle = 90.0;
-  ring.cells = {n, 2 * n};
+  const RingMesh ring = scenes::quarter_ring(n);
   const double E = 1000, nu = 0.3;
   s.bodies = {{"tube", ExtrudedMesh{ring, 0.0, 0.5, std::max(1, n / 2)}, LinearElastic{E, nu}, element, 1.0}};
   s.supports = {held("tube.start", "y"), held("tube.end", "x"), held("tube.front", "z"), held("tube.back", "z")};

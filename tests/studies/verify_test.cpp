@@ -278,6 +278,42 @@ TEST(Verify, HoldsForSolidBodiesInSpace) {
   for (const char* element : {"T10", "H20", "H27"}) expect_holds(solve(solid("finite", element, rubber(), ball, true)));
 }
 
+/// A body whose whole boundary is a slave has the normal of its sole at the corners of the sole. A master ends where
+/// its sole does: what is beside it faces nothing.
+TEST(Verify, HoldsAtTheCornersOfASlaveSide) {
+  json plane = json::parse(R"({
+    "bodies": {"upper": {"mesh": {"box": {"min": [1, 1], "max": [3, 2], "cells": [4, 2]}}},
+               "lower": {"mesh": {"box": {"min": [0, 0], "max": [4.2, 1], "cells": [5, 2]}}}},
+    "contacts": {"c": {"slave": "upper.boundary", "master": "lower.top", "friction": 0.3}},
+    "supports": [{"on": "lower.bottom", "move": {"x": 0, "y": 0}}, {"on": "upper.top", "move": {"x": 0.01, "y": -0.02}}],
+    "responses": {"N": {"contact_force": {"contact": "c", "component": "normal"}}},
+    "time": {"end": 1, "steps": 2}})");
+  json space = json::parse(R"({
+    "space": "solid",
+    "bodies": {"upper": {"mesh": {"box": {"min": [1, 1, 1], "max": [3, 2, 2], "cells": [3, 2, 2]}}},
+               "lower": {"mesh": {"box": {"min": [0, 0, 0], "max": [4.2, 3, 1], "cells": [5, 4, 2]}}},
+               "beside": {"mesh": {"box": {"min": [3, 1, 1], "max": [4, 2, 1.5], "cells": [1, 1, 1]}}}},
+    "contacts": {"c": {"between": "all", "friction": 0.3}},
+    "supports": [{"on": "lower.bottom", "move": {"x": 0, "y": 0, "z": 0}}, {"on": "beside.top", "move": {"x": 0, "y": 0, "z": -0.01}},
+                 {"on": "upper.top", "move": {"x": [[0, 0], [1, 0.01], [2, 0.02]], "y": 0, "z": -0.02}}],
+    "responses": {"N": {"contact_force": {"contact": "c/upper~lower", "component": "normal"}}},
+    "time": {"end": 2, "steps": 4}})");
+  for (json* scene : {&plane, &space})
+    for (auto& [name, body] : (*scene)["bodies"].items()) body["material"] = linear();
+  for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) {
+    SCOPED_TRACE(method);
+    expect_holds(solve(plane, method));
+    plane["contacts"]["c"]["surface"] = "smooth";
+    expect_holds(solve(plane, method));
+    plane["contacts"]["c"].erase("surface");
+    expect_holds(solve(space, method));
+  }
+  json finite = space;
+  finite["strain"] = "finite";
+  for (auto& [name, body] : finite["bodies"].items()) body["material"] = rubber();
+  expect_holds(solve(finite, "monolithic_al"));
+}
+
 TEST(Verify, HoldsForSolidBodiesThatSlideOnOneAnother) {
   for (const char* element : {"H8", "T4"})
     for (const auto& surface :

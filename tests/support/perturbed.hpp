@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/model/slots.hpp"
 #include "tests/support/derivatives.hpp"
@@ -21,14 +22,24 @@ inline void move_points(Eigen::Ref<Points<double>> points, const Perturbation& b
   points = points.array() * (1 + by.share * random.array().reshaped(points.rows(), points.cols()));
 }
 
+/// The corners of a linear element, begun at another one: turned about an axis of it. Of a quadratic one all its nodes.
+inline std::vector<int> turned_nodes(ElementShape shape) {
+  if (shape == ElementShape::tet4) return {1, 2, 0, 3};
+  if (shape == ElementShape::hex8) return {1, 2, 3, 0, 5, 6, 7, 4};
+  std::vector<int> nodes(nodes_of(shape));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  if (!is_quadratic(shape)) std::rotate(nodes.begin(), nodes.begin() + 1, nodes.end());
+  return nodes;
+}
+
 /// A mesh with its nodes and elements numbered backwards, and each linear element begun at another corner.
 inline void reverse_numbers(Mesh& mesh, Points<double>& points) {
   const int last = mesh.node_count - 1, corners = nodes_of(mesh.shape), elements = mesh.element_count();
-  const int turned = is_quadratic(mesh.shape) ? 0 : 1;
+  const auto turned = turned_nodes(mesh.shape);
   const auto before = mesh.connectivity;
   for (int e = 0; e < elements; ++e)
     for (int a = 0; a < corners; ++a)
-      mesh.connectivity[(elements - 1 - e) * corners + a] = last - before[e * corners + (a + turned) % corners];
+      mesh.connectivity[(elements - 1 - e) * corners + a] = last - before[e * corners + turned[a]];
   for (auto& [name, side] : mesh.sides) {
     for (int& node : side.nodes) node = last - node;
     for (auto* facets : {&side.facets, &side.quadratic})

@@ -43,6 +43,16 @@ Contact contact(const std::string& name, const std::string& slave, const std::st
   return c;
 }
 
+RingMesh quarter_ring(int n) {
+  RingMesh ring;
+  ring.center = {0.0, 0.0};
+  ring.inner = 1.0;
+  ring.outer = 2.0;
+  ring.to_angle = 90.0;
+  ring.cells = {n, 2 * n};
+  return ring;
+}
+
 Scene stop(double F, double k, double g0) {
   Scene s;
   s.legs = {{1, 1}};

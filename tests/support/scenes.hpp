@@ -26,6 +26,9 @@ Support support(const std::string& on, std::map<char, Table> move);
 
 Contact contact(const std::string& name, const std::string& slave, const std::string& master);
 
+/// A quarter of a ring of radii 1 and 2, with n cells along the radius and 2 n around.
+RingMesh quarter_ring(int n);
+
 /// A1: spring k pushed by F against a stop at g0, all in y.
 Scene stop(double F = 15, double k = 1000, double g0 = 0.01);
 

@@ -15,6 +15,7 @@ namespace {
 
 using Faces = std::vector<std::vector<int>>;
 using Corners = std::array<Vec<double, 3>, 4>;
+const Vec<double, 3> none(0, 0, 0);  ///< a slave without a side
 
 struct Surface {
   Points<double> points;
@@ -84,7 +85,7 @@ TEST(FaceSearch, FindsTheClosestPlace) {
     const FaceSearch search(s.points, s.faces);
     for (int k = 0; k < 60; ++k) {
       const Vec<double, 3> x(0.1 + 0.8 * uniform(random), 0.1 + 0.8 * uniform(random), 0.6 * uniform(random) - 0.3);
-      const auto found = search.closest(x);
+      const auto found = search.closest(x, none);
       ASSERT_FALSE(found.empty());
       const double distance = (x - position(s, found[0])).norm(), sampled = sampled_distance(s, x, grid);
       EXPECT_LE(distance, sampled * (1 + 1e-12));
@@ -104,13 +105,13 @@ TEST(FaceSearch, FindsTheFacesAroundANodeAndAnEdge) {
     return s;
   }();
   const FaceSearch search(flat.points, flat.faces);
-  EXPECT_EQ(search.closest({0.25, 0.5, 0.1}).size(), 4U);
-  EXPECT_EQ(search.closest({0.25, 0.4, -0.1}).size(), 2U);
-  EXPECT_EQ(search.closest({0.3, 0.4, -0.1}).size(), 1U);
-  EXPECT_EQ(search.closest({0, 0, 0.1}).size(), 1U);       // at a corner of the border
-  EXPECT_EQ(search.closest({0, -1e-8, 0.1}).size(), 1U);   // the rounding of a mesh file
-  EXPECT_TRUE(search.closest({0.1, -1e-3, 0.1}).empty());  // past the border
-  EXPECT_TRUE(search.closest({-1e-3, -1e-3, 0.1}).empty());
+  EXPECT_EQ(search.closest({0.25, 0.5, 0.1}, none).size(), 4U);
+  EXPECT_EQ(search.closest({0.25, 0.4, -0.1}, none).size(), 2U);
+  EXPECT_EQ(search.closest({0.3, 0.4, -0.1}, none).size(), 1U);
+  EXPECT_EQ(search.closest({0, 0, 0.1}, none).size(), 1U);       // at a corner of the border
+  EXPECT_EQ(search.closest({0, -1e-8, 0.1}, none).size(), 1U);   // the rounding of a mesh file
+  EXPECT_TRUE(search.closest({0.1, -1e-3, 0.1}, none).empty());  // past the border
+  EXPECT_TRUE(search.closest({-1e-3, -1e-3, 0.1}, none).empty());
 }
 
 /// A bilinear face has two stationary places; the other one, (1.969, 2.119), lies outside (MOOSE, issue 33438).
@@ -191,7 +192,7 @@ TEST(FaceSearch, AtANodeDerivativesAreTheMeanOfTheSides) {
   Surface s = hills(4, false, random, 0);
   s.points.row(2).setZero();
   const Vec<double, 3> x(0.5, 0.5, 0.1);
-  const auto faces = FaceSearch(s.points, s.faces).closest(x);
+  const auto faces = FaceSearch(s.points, s.faces).closest(x, none);
   std::vector<int> nodes{-1};
   for (const auto& face : faces)
     for (int n : face.nodes)

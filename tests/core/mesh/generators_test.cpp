@@ -9,6 +9,7 @@
 
 #include "core/mesh/quality.hpp"
 #include "tests/support/largest.hpp"
+#include "tests/support/mesh_derivatives.hpp"
 
 namespace stickslip::generators_test {
 namespace {
@@ -258,30 +259,11 @@ TEST(Point, IsANodeAndItsAnchorAtTheSamePlace) {
   EXPECT_EQ(points.col(1), points.col(0));
 }
 
-/// Coordinates' derivatives with respect to every slot, by Dual and by complex step, are the same to rounding.
+/// With middles, which move too, where there are any.
 template <int N>
 void expect_exact_derivatives(const MeshDescription& description, const std::vector<double>& numbers) {
-  ASSERT_EQ(numbers.size(), static_cast<std::size_t>(N));
-  Numbers<Dual<N>> seeded;
-  for (int i = 0; i < N; ++i) seeded.at_slot.push_back(Dual<N>::seed(numbers[i], i));
-  const bool chain = std::holds_alternative<LineMesh>(description) || std::holds_alternative<ArcMesh>(description) ||
-                     std::holds_alternative<PointMesh>(description);
-  const Mesh mesh = make_mesh(description, chain ? "" : "Q8", 2);  // its middles move too
-  const Points<Dual<N>> dual = make_points(description, mesh, seeded);
-  for (int i = 0; i < N; ++i) {
-    const double step = 1e-30;  // so small that its square is lost: the complex step has no truncation error
-    Numbers<std::complex<double>> moved{{numbers.begin(), numbers.end()}};
-    moved.at_slot[i] += std::complex<double>(0, step);
-    const Points<std::complex<double>> oracle = make_points(description, mesh, moved);
-    double largest = 0;
-    for (Eigen::Index k = 0; k < dual.size(); ++k) {
-      const double derivative = dual.data()[k].d[i], expected = oracle.data()[k].imag() / step;
-      largest = larger(largest, std::abs(expected));
-      // both evaluate the same formula of some fifty operations on numbers near 10
-      EXPECT_NEAR(derivative, expected, 1000 * eps * (1 + std::abs(expected)));
-    }
-    EXPECT_GT(largest, 1e-3) << "slot " << i << " moves nothing";
-  }
+  const bool fills = filling_of(description) == Filling::continuum;
+  stickslip::expect_exact_derivatives<N>(description, fills ? "Q8" : "", 2, numbers);
 }
 
 TEST(Coordinates, OfABoxHaveExactDerivatives) {

@@ -9,6 +9,7 @@
 #include "core/mesh/generators.hpp"
 #include "core/mesh/quality.hpp"
 #include "core/mesh/sides.hpp"
+#include "tests/support/mesh_derivatives.hpp"
 #include "tests/support/volumes.hpp"
 
 namespace stickslip::half_ball_test {
@@ -124,31 +125,13 @@ TEST(HalfBall, ConvergesToItsVolumeAndItsAreaWithTheSquareOfTheCells) {
 }
 
 TEST(HalfBall, HasExactDerivatives) {
-  constexpr int count = 5;
   for (const auto facing : {HalfBallMesh::Facing::down, HalfBallMesh::Facing::up})
     for (const double grade : {1.0, 40.0}) {
       HalfBallMesh ball = half_ball(6, 5, grade, facing);
       ball.center = {Number(0.3, 0), Number(-0.2, 1), Number(8.1, 2)};
       ball.radius = Number(8, 3);
       ball.grade = Number(grade, 4);
-      const std::vector<double> numbers{0.3, -0.2, 8.1, 8, grade};
-      Numbers<Dual<count>> seeded;
-      for (int i = 0; i < count; ++i) seeded.at_slot.push_back(Dual<count>::seed(numbers[i], i));
-      const Points<Dual<count>> dual = make_points(ball, seeded, 3);
-      for (int i = 0; i < count; ++i) {
-        const double step = 1e-30;  // so small that its square is lost: the complex step has no truncation error
-        Numbers<std::complex<double>> moved{{numbers.begin(), numbers.end()}};
-        moved.at_slot[i] += std::complex<double>(0, step);
-        const Points<std::complex<double>> oracle = make_points(ball, moved, 3);
-        double largest = 0;
-        for (Eigen::Index k = 0; k < dual.size(); ++k) {
-          const double expected = oracle.data()[k].imag() / step;
-          largest = larger(largest, std::abs(expected));
-          // both evaluate the same formula of some hundred operations on numbers near 10
-          EXPECT_NEAR(dual.data()[k].d[i], expected, 1000 * eps * (1 + std::abs(expected)));
-        }
-        EXPECT_GT(largest, 1e-3) << "slot " << i << " moves nothing";
-      }
+      expect_exact_derivatives<5>(ball, "H27", 3, {0.3, -0.2, 8.1, 8, grade});
     }
 }
 

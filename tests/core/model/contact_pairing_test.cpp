@@ -116,6 +116,54 @@ TEST(ContactPairs, LeaveOutSlaveNodesBeyondTheMaster) {
   ASSERT_EQ(model.points.size(), 3u);  // at 0, 1 and 2
 }
 
+/// The sole of a block ends at its corners, where the block's own side begins. That side is at a right angle to the
+/// floor, and rounding does not make it face the floor, however the blocks are turned.
+TEST(ContactPairs, LeaveOutSlaveNodesPastACornerOfTheMaster) {
+  for (int turn = 0; turn < 12; ++turn) {
+    const double c = std::cos(0.5 * turn), s = std::sin(0.5 * turn);
+    const auto block = [c, s](double left, double bottom, double right, double top, int cells) {
+      const auto at = [c, s](double x, double y) { return std::array<Number, 2>{c * x - s * y, s * x + c * y}; };
+      QuadMesh mesh;
+      mesh.corners = {{at(left, bottom), at(right, bottom), at(right, top), at(left, top)}};
+      mesh.cells = {cells, 2};
+      return mesh;
+    };
+    Scene scene;
+    scene.legs = {{1, 1}};
+    scene.bodies = {{"upper", block(1, 1, 3, 2, 3), LinearElastic{1.0, 0.3}, "", 1.0},
+                    {"lower", block(0, 0, 5, 1, 20), LinearElastic{1.0, 0.3}, "", 1.0}};
+    scene.contacts = {scenes::contact("touch", "lower.top", "upper.boundary")};
+    const Model model = make_model(scene);
+    EXPECT_EQ(model.points.size(), 9u) << turn;  // from 1 to 3, ends included
+    for (const auto& geometry : make_slots<double>(model, scene.as<double>()).geometry) {
+      EXPECT_NEAR(geometry.normal[0], s, 1e-14);  // of the sole
+      EXPECT_NEAR(geometry.normal[1], -c, 1e-14);
+    }
+  }
+}
+
+TEST(ContactPairs, LeaveOutSlaveNodesPastAnEdgeOfTheMasterInSpace) {
+  for (const bool simplices : {false, true}) {
+    BoxMesh upper, lower;
+    upper.min = {1.0, 1.0, 1.0};
+    upper.max = {3.0, 3.0, 2.0};
+    upper.cells = {3, 3, 1};
+    lower.min = {0.0, 0.0, 0.0};
+    lower.max = {4.0, 4.0, 1.0};
+    lower.cells = {8, 8, 1};
+    Scene scene;
+    scene.space = Space::solid;
+    scene.legs = {{1, 1}};
+    for (const auto& [name, mesh] : {std::pair{"upper", upper}, {"lower", lower}})
+      scene.bodies.push_back({name, mesh, LinearElastic{1.0, 0.3}, simplices ? "T4" : "H8", 1.0});
+    scene.contacts = {scenes::contact("touch", "lower.top", "upper.boundary")};
+    const Model model = make_model(scene);
+    EXPECT_EQ(model.points.size(), 25u);  // from 1 to 3 both ways, edges included
+    for (const auto& geometry : make_slots<double>(model, scene.as<double>()).geometry)
+      EXPECT_NEAR(geometry.normal[2], -1, 1e-14);
+  }
+}
+
 TEST(ContactPairs, LeaveOutSlaveNodesThatLookTheSameWayAsTheMaster) {
   EXPECT_TRUE(make_model(boxes(3, "upper.top")).points.empty());
   EXPECT_FALSE(make_model(boxes(3, "upper.bottom")).points.empty());
