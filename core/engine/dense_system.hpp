@@ -7,9 +7,8 @@
 /// the contact dofs (Layout::compact), l over the multipliers.
 #pragma once
 
-#include <Eigen/Eigenvalues>
-
 #include "core/algebra/dense_factor.hpp"
+#include "core/algebra/symmetric_modes.hpp"
 #include "core/engine/point_system.hpp"
 
 namespace stickslip {
@@ -146,8 +145,7 @@ std::optional<int> DenseSystem<T>::motions_unresisted(const std::vector<PointTan
     add_points(springs, Multipliers::given, K);
     K.diagonal() *= PointSystem<T>::raised;
     if (K.llt().info() == Eigen::Success) return 0;
-    const auto values = Eigen::SelfAdjointEigenSolver<Matrix<double>>(K, Eigen::EigenvaluesOnly).eigenvalues();
-    return static_cast<int>((values.array() < 0).count());
+    return count_negative_eigenvalues(K);
   }
   return std::nullopt;
 }

@@ -7,11 +7,11 @@
 /// its rows as price. S_oo is symmetric and its factor serves for all branches of the points.
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <vector>
 
 #include "core/algebra/dense_factor.hpp"
+#include "core/algebra/symmetric_modes.hpp"
 
 namespace stickslip {
 
@@ -53,8 +53,7 @@ class UntouchedRows {
   /// Of S_oo: how many eigenvalues are negative, and the sign of the determinant. `S`: that of eliminate().
   int negative_eigenvalues(const Matrix<T>& S) const {
     if (others_.empty() || factor_.is_cholesky()) return 0;
-    const Eigen::SelfAdjointEigenSolver<Matrix<T>> of(S(others_, others_), Eigen::EigenvaluesOnly);
-    return static_cast<int>((of.eigenvalues().array() < 0).count());
+    return count_negative_eigenvalues(Matrix<T>(S(others_, others_)));
   }
   int determinant_sign() const { return factor_.determinant_sign(); }
   long bytes() const { return static_cast<long>((W_.size() + reduced_.size()) * sizeof(T)) + factor_.bytes(); }

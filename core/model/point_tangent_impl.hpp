@@ -163,26 +163,35 @@ Eigen::MatrixXd jets_of(const ContactInput<T>& input, int p, const Facing& facin
   return basis.topRows(count);
 }
 
+/// Displacements of the nodes at `places` with derivatives, first those along jets_of() the nodes.
+template <class T, class Probe>
+struct AlongJets {
+  const Vector<T>& compact;
+  const std::vector<int>& places;
+  const Eigen::MatrixXd& jets;
+  Vec<Probe, 3> operator()(int place) const {
+    const auto column = std::find(places.begin(), places.end(), place) - places.begin();
+    Vec<Probe, 3> u;
+    for (int i = 0; i < 3; ++i) {
+      u[i] = Probe(compact[3 * place + i]);
+      for (Eigen::Index r = 0; r < jets.rows(); ++r) u[i].d[3 * r + i] = T(jets(r, column));
+    }
+    return u;
+  }
+};
+
 /// Tangent of a point in space by the displacements of the nodes at the places `of`, of which the first `faced` have
 /// forces: by dual numbers along jets_of() them.
 template <class T, int Tangents>
 PointTangent<T> tangent_by_jets(const ContactInput<T>& input, int p, const Facing& facing, std::vector<int> of,
                                 int faced, const Vector<T>& compact, const Vector<T>& multiplier, ContactState state) {
   constexpr int D = 3, C = 1 + Tangents, seeds = 7 * D;
-  using Probe = Dual<seeds + C, T>;
+  using Probe = Dual<seeds + D, T>;  // (D, not C: what moves is compiled once, with friction or without)
   PointTangent<T> tangent;
   auto& places = tangent.places;
   places = std::move(of);
   const Eigen::MatrixXd jets = jets_of(input, p, facing, places);
-  const auto displacement = [&](int place) {
-    const auto column = std::find(places.begin(), places.end(), place) - places.begin();
-    Vec<Probe, D> u;
-    for (int i = 0; i < D; ++i) {
-      u[i] = Probe(compact[D * place + i]);
-      for (Eigen::Index r = 0; r < jets.rows(); ++r) u[i].d[D * r + i] = T(jets(r, column));
-    }
-    return u;
-  };
+  const AlongJets<T, Probe> displacement{compact, places, jets};
   const auto spread = [&](const Probe& x, auto&& row) {
     for (Eigen::Index k = 0; k < jets.cols(); ++k)
       for (int i = 0; i < D; ++i) {
@@ -201,6 +210,23 @@ PointTangent<T> tangent_by_jets(const ContactInput<T>& input, int p, const Facin
   return tangent;
 }
 
+/// Displacements of the nodes at `places`, with the derivatives by their dofs from `first` on, `count` of them.
+template <class T, class Probe>
+struct SeededDofs {
+  const Vector<T>& compact;
+  const std::vector<int>& places;
+  int first, count;
+  Vec<Probe, 2> operator()(int place) const {
+    const int k = 2 * static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin()) - first;
+    Vec<Probe, 2> u;
+    for (int i = 0; i < 2; ++i) {
+      u[i] = Probe(compact[2 * place + i]);
+      if (k >= 0 && k < count) u[i].d[k + i] = T(1);
+    }
+    return u;
+  }
+};
+
 /// Tangent of a point of the plane by the displacements of the nodes at the places `of`, of which the first `faced`
 /// have forces, `at_once` dofs in one sweep. `facing`: what the point faces of its surface.
 template <class T, int Tangents, int at_once>
@@ -208,7 +234,7 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
                                   int faced, const Vector<T>& compact, const Vector<T>& multiplier,
                                   ContactState state) {
   constexpr int D = 2, C = 1 + Tangents;
-  using Probe = Dual<at_once + C, T>;
+  using Probe = Dual<at_once + D, T>;  // (as in tangent_by_jets)
   PointTangent<T> tangent;
   auto& places = tangent.places;
   places = std::move(of);
@@ -220,15 +246,7 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
   const FixedInput<Probe, T, Tangents> fixed(input, p);
   for (int first = 0; first < count; first += at_once) {
     const int seeded = std::min(at_once, count - first);
-    const auto displacement = [&](int place) {
-      const int k = D * static_cast<int>(std::find(places.begin(), places.end(), place) - places.begin()) - first;
-      Vec<Probe, D> u;
-      for (int i = 0; i < D; ++i) {
-        u[i] = Probe(compact[D * place + i]);
-        if (k >= 0 && k < seeded) u[i].d[k + i] = T(1);
-      }
-      return u;
-    };
+    const SeededDofs<T, Probe> displacement{compact, places, first, seeded};
     const auto spread = [&](const Probe& x, auto&& row) {
       for (int j = 0; j < seeded; ++j) row[first + j] = x.d[j];
     };
@@ -264,7 +282,7 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
       }
     }
     constexpr int C = 1 + Tangents;
-    using Probe = Dual<D + C, T>;
+    using Probe = Dual<2 * D, T>;
     const bool present = input.model.effects.current_geometry;
     Vec<T, D> w_value;
     if (present)

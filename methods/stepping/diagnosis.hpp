@@ -1,11 +1,11 @@
 /// Why an increment found no solution, in words of the scene.
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "core/algebra/symmetric_modes.hpp"
 #include "core/contact/segment_facets.hpp"
 #include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
@@ -68,20 +68,19 @@ std::string free_joint(const Model& model, const Slots<T>& slots, std::size_t b,
         hold(node, values(geometry.tangents.col(0)));
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix<double>> modes(squares);
+  const SymmetricModes modes = symmetric_modes(squares);
   Eigen::Index free = 0;
-  while (free < modes.eigenvalues().size() && modes.eigenvalues()[free] < held) ++free;
+  while (free < modes.values.size() && modes.values[free] < held) ++free;
   int joint = -1;
   double most = 0;
   for (int n = 0; free > 0 && n < count; ++n)
-    if (const double size = modes.eigenvectors().block(2 * n, 0, 2, free).norm(); size > (1 + alike) * most) {
+    if (const double size = modes.vectors.block(2 * n, 0, 2, free).norm(); size > (1 + alike) * most) {
       joint = n;
       most = size;
     }
   if (joint < 0) return "";
-  const auto motion = modes.eigenvectors().block(2 * joint, 0, 2, free);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions(motion * motion.transpose());
-  Vec<double, 2> along = directions.eigenvectors().col(1);
+  const auto motion = modes.vectors.block(2 * joint, 0, 2, free);
+  Vec<double, 2> along = symmetric_modes(motion * motion.transpose()).vectors.col(1);
   if (along[0] < -alike || (std::abs(along[0]) <= alike && along[1] < 0)) along = -along;
   return "at " + in_words(X(body.first + joint), X(body.first + joint).norm()) + " is free to move along " +
          in_words(along, 1);

@@ -1,11 +1,11 @@
 /// Bodies that their supports and contacts leave free to move.
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <string>
 #include <vector>
 
+#include "core/algebra/symmetric_modes.hpp"
 #include "core/model/contact_assembly.hpp"
 #include "core/model/frames.hpp"
 #include "core/model/state.hpp"
@@ -83,10 +83,10 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
     if (states[p] == ContactState::stick && point.tangents > 0)
       hold(values(geometry.tangents.col(0)).transpose() * motions);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(squares);
-  const Eigen::Vector3d least = modes.eigenvectors().col(0);
+  const SymmetricModes modes = symmetric_modes(squares);
+  const Eigen::Vector3d least = modes.vectors.col(0);
   for (const Eigen::Vector3d& mode : {Eigen::Vector3d::Unit(0).eval(), Eigen::Vector3d::Unit(1).eval(), least}) {
-    if ((squares * mode).norm() > held * std::max(1.0, modes.eigenvalues()[2])) continue;
+    if ((squares * mode).norm() > held * std::max(1.0, modes.values[2])) continue;
     const Vec<double, 2> along = mode.head(2) * (mode[0] < 0 ? -1 : 1);
     if (std::abs(mode[2]) <= straight) return "along " + detail::in_words(along, 1);
     return "about " + detail::in_words(centre + Vec<double, 2>(-mode[1], mode[0]) * size / mode[2], size);

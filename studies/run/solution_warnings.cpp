@@ -122,11 +122,11 @@ void add_mechanisms(const CaseResult& result, std::vector<Warning>& warnings) {
   }
 }
 
-/// Natural places at which the change of volume of an element is looked at: of straight sides its corners; of curved
-/// ones a grid of 5 x 5.
+/// dN/dxi, nodes x dimension, at the natural places at which the change of volume of an element is looked at: of
+/// straight sides its corners; of curved ones a grid of 5 x 5.
 template <class Shape>
-std::vector<typename Shape::Point> places_of_volumes() {
-  std::vector<typename Shape::Point> all;
+std::vector<Matrix<double>> gradients_of_shape() {
+  std::vector<Matrix<double>> all;
   constexpr int n = Shape::nodes > Shape::corners ? 4 : 1;
   constexpr bool simplex = Shape::is_simplex;
   const auto natural = [](int i) { return simplex ? static_cast<double>(i) / n : 2.0 * i / n - 1; };
@@ -134,27 +134,28 @@ std::vector<typename Shape::Point> places_of_volumes() {
     for (int j = 0; j <= (simplex ? n - i : n); ++j)
       if constexpr (Shape::dimension == 3)
         for (int k = 0; k <= (simplex ? n - i - j : n); ++k)
-          all.push_back(Shape::at(natural(i), natural(j), natural(k), 0));
+          all.emplace_back(Shape::at(natural(i), natural(j), natural(k), 0).gradient.transpose());
       else
-        all.push_back(Shape::at(natural(i), natural(j), 0));
+        all.emplace_back(Shape::at(natural(i), natural(j), 0).gradient.transpose());
   return all;
+}
+std::vector<Matrix<double>> gradients_of(ElementShape shape) {
+  std::vector<Matrix<double>> gradients;
+  with_shape(shape, [&]<class Shape>(Shape) { gradients = gradients_of_shape<Shape>(); });
+  return gradients;
 }
 
 /// Least over largest of the change of volume J within an element whose nodes go from X to x; negative where it turns
-/// over.
-double evenness(ElementShape shape, const Points<double>& X, const Points<double>& x) {
+/// over. `gradients`: of its shape.
+template <int D>
+double evenness(const std::vector<Matrix<double>>& gradients, const Points<double>& X, const Points<double>& x) {
   double least = std::numeric_limits<double>::infinity(), largest = 0;
-  with_shape(shape, [&]<class Shape>(Shape) {
-    static const auto places = places_of_volumes<Shape>();
-    const Nodal<double, Shape> first = X, last = x;
-    for (const auto& at : places) {
-      const Mat<double, Shape::dimension> before = first * at.gradient.transpose(),
-                                          now = last * at.gradient.transpose();
-      const double J = now.determinant() / before.determinant();
-      least = std::min(least, J);
-      largest = std::max(largest, J);
-    }
-  });
+  for (const auto& gradient : gradients) {
+    const Mat<double, D> before = X * gradient, now = x * gradient;
+    const double J = now.determinant() / before.determinant();
+    least = std::min(least, J);
+    largest = std::max(largest, J);
+  }
   return least / largest;
 }
 
@@ -169,6 +170,7 @@ void add_folded_elements(const CaseResult& result, std::vector<Warning>& warning
     double first = 0;
     std::vector<int> nodes;
     Points<double> X, x;
+    const auto gradients = gradients_of(body.mesh.shape);
     for (const auto& step : solved_steps(result)) {
       const auto& u = step.increment->state.displacement;
       long folded = 0;
@@ -176,7 +178,7 @@ void add_folded_elements(const CaseResult& result, std::vector<Warning>& warning
         detail::set_element_nodes(body, e, nodes);
         X = slots.points(Eigen::all, nodes);
         x = X + u.reshaped(model.dimension, model.node_count)(Eigen::all, nodes);
-        folded += evenness(body.mesh.shape, X, x) < nearly;
+        with_dimension(model.dimension, [&]<int D>() { folded += evenness<D>(gradients, X, x) < nearly; });
       }
       if (folded > 0 && most == 0) first = step.increment->time;
       most = std::max(most, folded);

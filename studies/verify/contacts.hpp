@@ -13,6 +13,14 @@
 
 namespace stickslip::verify {
 
+/// The rotation that takes one unit vector to another the shortest way; in the plane about its normal.
+inline Mat3 shortest_turn(const Vec3& from, const Vec3& to) {
+  const Vec3 across = from.cross(to);
+  const double sine = across.norm();
+  const Vec3 axis = sine > 0 ? Vec3(across / sine) : Vec3(0, 0, 1);
+  return Eigen::AngleAxisd(std::atan2(sine, from.dot(to)), axis).toRotationMatrix();
+}
+
 /// A contact of a slave side and a master.
 class Contact {
  public:
@@ -276,7 +284,7 @@ class Contact {
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
         turn = deformed.matrixU() * deformed.matrixV().transpose();
       }
-      touch.turned = Eigen::Quaterniond::FromTwoVectors(turn * last.normal, touch.normal).matrix() * turn;
+      touch.turned = shortest_turn(turn * last.normal, touch.normal) * turn;
     }
     touch.slip -= touch.normal.dot(touch.slip) * touch.normal;
     if (touch.faces) touch.gap += given.value("offset", 0.0);

@@ -62,9 +62,14 @@ using Held = std::vector<std::pair<Vec3, double>>;
 Field taken(const std::map<int, Held>& held, const Field& forces) {
   Field all = Field::Zero(3, forces.cols());
   for (const auto& [node, holds] : held) {
-    Field N(3, holds.size());
-    for (std::size_t k = 0; k < holds.size(); ++k) N.col(k) = holds[k].first;
-    all.col(node) = N * N.completeOrthogonalDecomposition().solve(forces.col(node));
+    std::vector<Vec3> across;  // one another, of the directions so far
+    for (const auto& [direction, motion] : holds) {
+      Vec3 rest = direction.normalized();
+      for (int twice = 0; twice < 2; ++twice)  // (once leaves what rounding makes of directions nearly alike)
+        for (const Vec3& other : across) rest -= other.dot(rest) * other;
+      if (rest.norm() > 1e-9) across.push_back(rest.normalized());
+    }
+    for (const Vec3& direction : across) all.col(node) += direction.dot(forces.col(node)) * direction;
   }
   return all;
 }
