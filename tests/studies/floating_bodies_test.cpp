@@ -122,7 +122,7 @@ TEST(ABodyFreeToSlide, RestsWhereItIsPressedAtEveryScaleOfUzawa) {
 
 /// At first nothing presses on one of the disks, and the other is held by single nodes, on which it rolls as one slips.
 /// Whatever supports alone do not hold is moved with what floats.
-TEST(FloatingBodies, AreFoundBesideThoseThatRoll) {
+TEST(SlowFloatingBodies, AreFoundBesideThoseThatRoll) {
   const std::string file = std::string(STICKSLIP_SOURCE_DIR) + "/studies/hard/disks-between-plates.json";
   std::optional<double> press;
   for (const auto& method : {"monolithic_al", "uzawa_al", "penalty"}) {
