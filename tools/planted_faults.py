@@ -56,7 +56,7 @@ FAULTS = [
     ("hoop stretch without its shear stress", "core/solids/neo_hookean.hpp",
      "P(2, 2) = <<<U(shear) * h * (U(2) + h) / F22>>> +", "U(0)"),
     ("normal that does not turn in the tangent", "core/model/point_tangent_impl.hpp",
-     "geometry = <<<std::move(at.geometry)>>>;\n    } else", "detail::promote<Probe>(input.slots.geometry[p])"),
+     "geometry = <<<std::move(at.geometry)>>>;\n  } else", "promote<Probe>(input.slots.geometry[p])"),
     ("adjoint without what history began with", "sensitivity/adjoint.cpp",
      "objective.adjoint[part[i].entry] += <<<derivative[i]>>>;", "0.0"),
     ("energy of a finite strain without its volume", "core/solids/neo_hookean.hpp",

@@ -256,6 +256,51 @@ PointTangent<T> tangent_by_places(const ContactInput<T>& input, int p, const Fac
   return tangent;
 }
 
+/// Tangent of a point that moves as its slave node does against an obstacle, or at small strain by w: by one motion.
+template <class T, int D, int Tangents>
+PointTangent<T> tangent_of_motion(const ContactInput<T>& input, int p, const Vector<T>& compact,
+                                  const Vector<T>& multiplier, ContactState state) {
+  const auto& point = input.model.points[p];
+  constexpr int C = 1 + Tangents;
+  using Probe = Dual<2 * D, T>;
+  const bool present = input.model.effects.current_geometry;
+  Vec<T, D> w_value;
+  if (present)
+    w_value = compact.template segment<D>(point.places[0] * D);
+  else
+    w_value = relative_displacement<T, D>(input, p, compact);
+  Vec<Probe, D> w;
+  for (int i = 0; i < D; ++i) w[i] = Probe::seed(w_value[i], i);
+  const auto lambda = seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, D);
+  const FixedInput<Probe, T, Tangents> fixed_input(input, p);
+  PointOutcome<Probe, Tangents> outcome;
+  PointGeometry<Probe> geometry;
+  if (present) {
+    const auto displacement = [&](int) { return w; };
+    const Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement, input.time};
+    auto at = on_obstacle<D>(positions, point, earlier(input, p));
+    outcome = point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
+                                                   fixed_input.friction, 0, &state);
+    geometry = std::move(at.geometry);
+  } else {
+    geometry = promote<Probe>(input.slots.geometry[p]);
+    outcome = evaluate_point<Probe, D, Tangents>(geometry, w, lambda, fixed_input.placement, fixed_input.rho,
+                                                 fixed_input.friction, input.cone, 0, &state);
+  }
+  const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
+  PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
+  for (int i = 0; i < D; ++i) {
+    for (int j = 0; j < D; ++j) tangent.force_w(i, j) = force[i].d[j];
+    for (int c = 0; c < C; ++c) tangent.force_l(i, c) = force[i].d[D + c];
+  }
+  for (int r = 0; r < C; ++r) {
+    const Probe row = input.slots.geometry[p].area * row_of(outcome.traction, lambda, r);
+    for (int j = 0; j < D; ++j) tangent.row_w(r, j) = row.d[j];
+    for (int c = 0; c < C; ++c) tangent.row_l(r, c) = row.d[D + c];
+  }
+  return tangent;
+}
+
 }  // namespace detail
 
 template <class T>
@@ -281,45 +326,7 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
                                                     state);
       }
     }
-    constexpr int C = 1 + Tangents;
-    using Probe = Dual<2 * D, T>;
-    const bool present = input.model.effects.current_geometry;
-    Vec<T, D> w_value;
-    if (present)
-      w_value = compact.template segment<D>(point.places[0] * D);
-    else
-      w_value = detail::relative_displacement<T, D>(input, p, compact);
-    Vec<Probe, D> w;
-    for (int i = 0; i < D; ++i) w[i] = Probe::seed(w_value[i], i);
-    const auto lambda = detail::seeded_multiplier<Probe, T, Tangents>(input, p, multiplier, D);
-    const detail::FixedInput<Probe, T, Tangents> fixed_input(input, p);
-    PointOutcome<Probe, Tangents> outcome;
-    PointGeometry<Probe> geometry;
-    if (present) {
-      const auto displacement = [&](int) { return w; };
-      const detail::Positions<Probe, T, decltype(displacement)> positions{input.model, input.slots, displacement,
-                                                                          input.time};
-      auto at = detail::on_obstacle<D>(positions, point, detail::earlier(input, p));
-      outcome = detail::point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed_input.placement, fixed_input.rho,
-                                                             fixed_input.friction, 0, &state);
-      geometry = std::move(at.geometry);
-    } else {
-      geometry = detail::promote<Probe>(input.slots.geometry[p]);
-      outcome = evaluate_point<Probe, D, Tangents>(geometry, w, lambda, fixed_input.placement, fixed_input.rho,
-                                                   fixed_input.friction, input.cone, 0, &state);
-    }
-    const Vec<Probe, D> force = point_force<Probe, D, Tangents>(geometry, outcome.traction);
-    PointTangent<T> tangent{Matrix<T>(D, D), Matrix<T>(D, C), Matrix<T>(C, D), Matrix<T>(C, C)};
-    for (int i = 0; i < D; ++i) {
-      for (int j = 0; j < D; ++j) tangent.force_w(i, j) = force[i].d[j];
-      for (int c = 0; c < C; ++c) tangent.force_l(i, c) = force[i].d[D + c];
-    }
-    for (int r = 0; r < C; ++r) {
-      const Probe row = input.slots.geometry[p].area * detail::row_of(outcome.traction, lambda, r);
-      for (int j = 0; j < D; ++j) tangent.row_w(r, j) = row.d[j];
-      for (int c = 0; c < C; ++c) tangent.row_l(r, c) = row.d[D + c];
-    }
-    return tangent;
+    return detail::tangent_of_motion<T, D, Tangents>(input, p, compact, multiplier, state);
   });
 }
 

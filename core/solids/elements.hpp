@@ -5,7 +5,7 @@
 ///
 /// sigma is the stress that does work on H: at finite strain the first Piola-Kirchhoff stress. The material tangent is
 /// the Dual of the stress routine; this file writes its assembly into an element once, by hand, but with mean
-/// dilatation at finite strain, where the tangent is the Dual of the whole element. Tested against that of all.
+/// dilatation at finite strain, where the tangent is the Dual of the whole element. Tested against the complex step.
 #pragma once
 
 #include "core/solids/hardening.hpp"

@@ -140,11 +140,8 @@ class Faces {
     return near;
   }
 
-  /// Whether a face does not oppose a side, if there is one. At small strain one at a right angle does not either.
   bool looks_away(int p, const Vec3& outward) const {
-    const Vec3& across = boxes_[p][2];
-    const double share = finite_ ? 0 : -1e-6;
-    return !outward.isZero() && outward.dot(across) > share * outward.norm() * across.norm();
+    return finite_ ? outward.dot(boxes_[p][2]) > 0 : !opposes(boxes_[p][2], outward);
   }
 
   /// Whether x is past an edge at which the faces that oppose a side end: at finite strain by more than a hundredth of

@@ -66,6 +66,11 @@ struct Seeker {
   }
 };
 
+/// Whether what has a normal looks against the slave's side at small strain, where one at a right angle does not.
+inline bool opposes(const Vec3& normal, const Vec3& outward) {
+  return outward.isZero() || normal.dot(outward) < -1e-6 * normal.norm() * outward.norm();
+}
+
 /// A place of contact: a slave node, or the multiplier of one. Its weights are 1 of the slave, -N_i of the master. The
 /// traction and the springs are of whoever solved it.
 struct Touch : Foot {
@@ -276,11 +281,8 @@ class Master {
     return !walls_.at(seeker.node).own[p] && against <= -0.5 * seeker.outward.norm() * line.tau.norm() && beside;
   }
 
-  /// Whether a patch looks against the slave's side at small strain, where one at a right angle does not.
   bool opposes(const Seeker& seeker, int p) const {
-    const Vec3 across = right_of(line_of(p).tau);
-    return rigid() || seeker.outward.isZero() ||
-           seeker.outward.dot(across) < -1e-6 * seeker.outward.norm() * across.norm();
+    return rigid() || verify::opposes(right_of(line_of(p).tau), seeker.outward);
   }
 
   /// The closest place of all patches, 0 <= xi <= 1; where two end in it, that on whose side of their bisector the

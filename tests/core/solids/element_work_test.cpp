@@ -61,7 +61,7 @@ void expect_derivatives(const Law& law, int count = 3) {
 
 TEST(ElementWork, HasTheDerivativesOfTheComplexStep) {
   const LinearElasticLaw<double> linear(3.0, 2.0);
-  for (int count : {2, 9, 28}) {  // fewer and more than an element has nodes
+  for (int count : {2, 9}) {  // fewer and more than an element has nodes
     expect_derivatives<Quad8, Kinematics::plane>(linear, count);
     expect_derivatives<Quad4, Kinematics::revolution_mean_dilatation>(linear, count);
     expect_derivatives<Tri6, Kinematics::revolution>(linear, count);
