@@ -34,7 +34,7 @@ FAULTS = [
     ("corner that takes the first facet", "core/contact/search_in_plane.cpp",
      "if (<<<end == 1 ? side <= 0 : side >= 0>>>) return foot;", "true"),
     ("face that looks the same way", "core/contact/search_in_plane.cpp",
-     "if (along > 0 || !query.own) return <<<!(along > 0)>>>;", "true"),
+     "outward.norm() * tau.norm()) return <<<false>>>;", "true"),
     ("side that touches itself beside where it is", "core/contact/search_in_plane.cpp",
      "return gap >= -query.own->depth_in(patch, query.last) && <<<is_beside_facet(off.dot(tau) / tau.squaredNorm())>>>;", "true"),
     ("boxes further away than they are", "core/contact/box_tree.hpp",
@@ -96,7 +96,7 @@ FAULTS = [
     ("bodies that float tried at rest too soon", "methods/rescue/motion.hpp",
      "return <<<alpha>>> * largest_nodal_norm(way", "0"),
     ("no tie length", "core/model/slave_point.cpp", "point.tie_length = <<<8>>> * unit_roundoff", "0"),
-    ("facing nodes that look the same way", "core/contact/surfaces.hpp", "dot(outward) < <<<-at_right_angle>>> *", "1"),
+    ("facing nodes that look the same way", "core/contact/surfaces.hpp", "dot(outward) < <<<-mesh_file_rounding>>> *", "1"),
     ("a sole that goes on past its corner", "core/model/pairing.cpp", "if (<<<closest->second >= 0>>> && master", "false"),
     # bodies, loads, supports
     ("plane stress as plane strain", "core/solids/linear_elastic.hpp",

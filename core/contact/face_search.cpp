@@ -9,10 +9,6 @@
 namespace stickslip {
 namespace {
 
-/// Share of a face's size by which a projection may lie past a border of the surface: coordinates of a mesh file are
-/// rounded, and that must not decide whether a node at the border of its master faces it.
-constexpr double past_border = 1e-6;
-
 /// Whether place a precedes place b at the same distance.
 bool precedes(const NearestPlace& a, const NearestPlace& b) {
   const bool a_inside = a.place.part == FacePart::inside, b_inside = b.place.part == FacePart::inside;
@@ -80,12 +76,13 @@ Vec<double, 3> FaceSearch::across(int face) const {
   return area_vector<double>(faces_[face].corners, [&](int k) { return corner[k]; });
 }
 
-std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const {
+std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x,
+                                                  const std::function<bool(int)>& counts) const {
   std::vector<Near> near;  // as near as the nearest so far, and ties
   double least = std::numeric_limits<double>::infinity();
   const auto skips = [&](const Bounds<3>& box) { return box.distance(x) > least + band_; };
   boxes_.visit(x, skips, [&](int f) {
-    if (outward != Vec<double, 3>::Zero() && across(f).dot(outward) >= 0) return;
+    if (!counts(f)) return;
     near.push_back({nearest_of_face(faces_[f], corners(faces_[f]), x), f});
     least = std::min(least, near.back().distance);
   });
@@ -97,7 +94,7 @@ std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x, const
 }
 
 std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const {
-  auto near = nearest(x, Vec<double, 3>::Zero());
+  auto near = nearest(x, [](int) { return true; });
   const auto away = std::stable_partition(near.begin(), near.end(), [&](const Near& at) {
     return outward == Vec<double, 3>::Zero() || opposes<3>(across(at.face), outward);
   });
@@ -127,7 +124,7 @@ bool FaceSearch::is_past_border(const std::vector<Near>& places, const std::vect
       const auto at =
           face_position(corner, face_weights<double>(near.place.corners, near.place.at[0], near.place.at[1]));
       const Vec<double, 3> outward = cross<double>(along, cross(at.along_s, at.along_t)).normalized();
-      if ((x - near.position).dot(outward) > past_border * near.size) return true;
+      if ((x - near.position).dot(outward) > mesh_file_rounding * near.size) return true;
     }
   }
   return false;

@@ -1,6 +1,7 @@
 /// Search for what a point faces of a surface in space. The faces may come in any order.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/contact/box_tree.hpp"
@@ -21,10 +22,8 @@ class FaceSearch {
     int face;
   };
   /// The closest places to x, which are as near as one another: on one face, or on several at an edge or a corner.
-  ///
-  ///   outward  outward normal of the slave side at x, any length: faces whose normal does not oppose it are passed
-  ///            over; if it is zero, none is
-  std::vector<Near> nearest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const;
+  /// `counts(face)`: whether the face is looked at.
+  std::vector<Near> nearest(const Vec<double, 3>& x, const std::function<bool(int)>& counts) const;
 
   /// The closest place of the surface to x, on each face that has it and opposes `outward`, if that is not zero; none
   /// if x projects past a border of the surface, or past an edge beyond which it does not oppose. Of places that are

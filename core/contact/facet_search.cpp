@@ -9,10 +9,6 @@
 namespace stickslip {
 namespace {
 
-/// Share of a facet's length by which a projection may lie past the end of the side. Why: coordinates of a mesh
-/// file are rounded, and that rounding must not decide whether a node at the end of its master faces it.
-constexpr double past_free_end = 1e-6;
-
 /// The nearest place of a facet, and its position.
 struct Foot : FacetPlace {
   Vec<double, 2> position;
@@ -26,7 +22,9 @@ bool precedes(const Foot& a, const Foot& b) {
   return a.position[0] < b.position[0] || (a.position[0] == b.position[0] && a.position[1] < b.position[1]);
 }
 
-bool is_past_end(const FacetPlace& place) { return place.xi < -past_free_end || place.xi > 1 + past_free_end; }
+bool is_past_end(const FacetPlace& place) {
+  return place.xi < -mesh_file_rounding || place.xi > 1 + mesh_file_rounding;
+}
 
 }  // namespace
 

@@ -15,8 +15,8 @@ auto position_in(const Places<2>& positions) {
 
 }  // namespace
 
-PatchSearch<2>::PatchSearch(const Surface<2>& patches, const Places<2>& positions)
-    : patches_(patches), positions_(positions) {
+PatchSearch<2>::PatchSearch(const Surface<2>& patches, const Places<2>& positions, double rounding)
+    : patches_(patches), positions_(positions), rounding_(rounding) {
   if (!positions.allFinite()) return;  // Newton tried an iterate that overflows
   const int count = static_cast<int>(patches.size());
   facets_ = BoxTree<2>(count, [this](int patch) {  // a facet of zero length has any normal
@@ -39,7 +39,7 @@ bool PatchSearch<2>::may_be_eligible(const Bounds<2>& box, const Query& query) c
   const Vec<double, 2>& outward = query.outward;
   const Vec<double, 2> least =
       (outward.array() * box.normal_low.array()).min(outward.array() * box.normal_high.array());
-  if (least.sum() > (rounding - (query.own ? least_against : 0)) * outward.norm()) return false;
+  if (least.sum() > (rounding - (query.own ? least_against : rounding_)) * outward.norm()) return false;
   if (!query.own) return true;
   double most = 0;  // upper bound of the gap of x to the facets of the box
   for (int i = 0; i < 2; ++i) {
@@ -53,8 +53,9 @@ bool PatchSearch<2>::may_be_eligible(const Bounds<2>& box, const Query& query) c
 bool PatchSearch<2>::is_eligible(int patch, const Query& query) const {
   const Vec<double, 2> a = vertex(patch, 0), tau = vertex(patch, 1) - a, &outward = query.outward;
   const double along = outward[0] * tau[1] - outward[1] * tau[0];  // facet length x outward . facet normal
-  if (along > 0 || !query.own) return !(along > 0);
-  if (along > -least_against * outward.norm() * tau.norm() || !query.own->may_face(patches_, patch)) return false;
+  if (along > -(query.own ? least_against : rounding_) * outward.norm() * tau.norm()) return false;
+  if (!query.own) return true;
+  if (!query.own->may_face(patches_, patch)) return false;
   const Vec<double, 2> off = query.x - a;
   const double gap = (off[0] * tau[1] - off[1] * tau[0]) / tau.norm();
   if (gap >= 0) return true;
@@ -110,7 +111,7 @@ Facing PatchSearch<2>::past_end(const Facing& foot, const Query& query) const {
 }
 
 /// Newton's method for the foot of x, from the start value `from`. It may pass to the next patch, `hops` times at most,
-/// where the two patches join without a corner.
+/// where the two patches join without a corner. patch = none as in space.
 Facing PatchSearch<2>::newton_foot(Facing from, const Vec<double, 2>& x, int hops) const {
   constexpr int most = 50;
   constexpr double longest = 0.5;
@@ -140,7 +141,9 @@ Facing PatchSearch<2>::newton_foot(Facing from, const Vec<double, 2>& x, int hop
       --hops;
       continue;
     }
-    if (settled) return {at, {xi, 0}};
+    if (!settled) continue;
+    const Facing foot{at, {xi, 0}};
+    return all > 0 && is_past_joint<2>(patch, foot.at, past_end_of_surface) ? Facing{} : foot;
   }
   return {};
 }
@@ -162,6 +165,10 @@ Facing PatchSearch<2>::nearest_facing(const Query& query) const {
 
 double PatchSearch<2>::gap(const Facing& foot, const Vec<double, 2>& x) const {
   return foot_on_patch<double>(patches_[foot.patch], foot.at, x, position_in(positions_)).gap;
+}
+
+bool PatchSearch<2>::is_inside(const Facing& foot, const Vec<double, 2>& x) const {
+  return gap(foot, x) < -rounding_ * (vertex(foot.patch, 1) - vertex(foot.patch, 0)).norm();
 }
 
 Facing PatchSearch<2>::facing_nothing(const Vec<double, 2>& x) const {

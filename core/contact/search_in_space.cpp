@@ -69,8 +69,11 @@ std::array<Facing, 2> places_on_edge(const Surface<3>& patches, const Facing& fa
           facing_on_edge(patches, patch.across[edge], patch.across_edge[edge], 1 - share)};
 }
 
-PatchSearch<3>::PatchSearch(const Surface<3>& patches, const Places<3>& positions)
-    : patches_(patches), positions_(positions), faces_(positions, faces_of(patches), borders_of(patches)) {}
+PatchSearch<3>::PatchSearch(const Surface<3>& patches, const Places<3>& positions, double rounding)
+    : patches_(patches),
+      positions_(positions),
+      rounding_(rounding),
+      faces_(positions, faces_of(patches), borders_of(patches)) {}
 
 /// Vectors from x to the vertices of a patch.
 Eigen::Matrix3Xd PatchSearch<3>::arms(int patch, const Vec<double, 3>& x) const {
@@ -86,11 +89,18 @@ double PatchSearch<3>::gap(const Facing& at, const Vec<double, 3>& x) const {
   return -y.col(0).dot(cross<double>(y.col(1), y.col(2)).normalized());
 }
 
+bool PatchSearch<3>::is_inside(const Facing& at, const Vec<double, 3>& x) const {
+  const auto& corners = patches_[at.patch].vertices;
+  return gap(at, x) < -rounding_ * (positions_.col(corners[1]) - positions_.col(corners[0])).norm();
+}
+
 /// Newton's method for the foot of x, from the start value `at`. It may pass to the next patch, `hops` times at most,
-/// where the two patches join smoothly. patch = none if it does not end, or x is beyond a centre of curvature.
+/// where the two patches join smoothly. patch = none if it does not end, or ends past the patch where it has no hop
+/// left; or if x is beyond a centre of curvature.
 Facing PatchSearch<3>::newton_foot(Facing at, const Vec<double, 3>& x, int hops) const {
   constexpr int most = 50;
   constexpr double longest = 0.5, settled = 1e-10, farthest = 1;
+  const bool passes = hops > 0;
   for (int step = 0; step < most; ++step) {
     const Patch<3>& patch = patches_[at.patch];
     const Vec<double, 2> from = at.at;
@@ -107,7 +117,8 @@ Facing PatchSearch<3>::newton_foot(Facing at, const Vec<double, 3>& x, int hops)
     Vec<double, 2> move = slope * Vec<double, 2>(off.dot(y.col(1)), off.dot(y.col(2)));
     const double length = move.cwiseAbs().maxCoeff();
     if (!(length < std::numeric_limits<double>::infinity())) return {};
-    if (length <= settled) return is_minimum ? at : Facing{};
+    if (length <= settled)
+      return is_minimum && !(passes && is_past_joint<3>(patch, from, past_end_of_surface)) ? at : Facing{};
     if (length > longest) move *= longest / length;
     const Vec<double, 2> to = from + move;
     int crossed = no_patch;
@@ -149,7 +160,8 @@ Facing PatchSearch<3>::larger_gap(const std::vector<Facing>& feet, const Vec<dou
 bool PatchSearch<3>::is_eligible(int patch, const Query& query) const {
   if (query.outward == Vec<double, 3>::Zero()) return true;
   const auto corner = [&](int k) -> Vec<double, 3> { return positions_.col(patches_[patch].vertices[k]); };
-  return area_vector<double>(patches_[patch].corners, corner).dot(query.outward) < 0;
+  const Vec<double, 3> across = area_vector<double>(patches_[patch].corners, corner);
+  return across.dot(query.outward) < -rounding_ * across.norm() * query.outward.norm();
 }
 
 /// Whether a foot is beyond an edge at which the eligible patches end.
@@ -179,7 +191,7 @@ Facing PatchSearch<3>::beyond_edges(const Facing& at, const Query& query) const 
 Facing PatchSearch<3>::nearest_facing(const Query& query) const {
   constexpr int hops = 8;
   if (!query.x.allFinite()) return {};
-  const auto near = faces_.nearest(query.x, query.outward);
+  const auto near = faces_.nearest(query.x, [&](int patch) { return is_eligible(patch, query); });
   if (near.empty()) return {};
   const auto foot = [&](const Near& from, int most) { return newton_foot({from.face, from.place.at}, query.x, most); };
   const Near* first = &near.front();
@@ -201,7 +213,7 @@ Facing PatchSearch<3>::nearest_facing(const Query& query) const {
 }
 
 Facing PatchSearch<3>::facing_nothing(const Vec<double, 3>& x) const {
-  const auto near = x.allFinite() ? faces_.nearest(x, Vec<double, 3>::Zero()) : std::vector<Near>();
+  const auto near = x.allFinite() ? faces_.nearest(x, [](int) { return true; }) : std::vector<Near>();
   if (near.empty()) return {.distance = std::numeric_limits<double>::infinity()};
   const auto first =
       std::min_element(near.begin(), near.end(), [](const Near& a, const Near& b) { return a.face < b.face; });

@@ -108,6 +108,15 @@ bool is_past_border(const Patch<D>& patch, const Vec<double, 2>& at, double by) 
   return false;
 }
 
+/// Whether a place is beyond an edge behind which the surface goes on smoothly, by more than `by`. Smooth weights mean
+/// nothing there: the place is on another patch, or on none, as past a corner of the border.
+template <int D>
+bool is_past_joint(const Patch<D>& patch, const Vec<double, 2>& at, double by) {
+  for (int k = 0; k < patch.corners; ++k)
+    if (patch.goes_on(k) && beyond_edge(patch, k, at) > by) return true;
+  return false;
+}
+
 /// What a contact point faces: a place on a surface, or segments of a curve.
 struct Facing {
   /// Coordinates on a patch; not aligned, so that no room is lost around them.

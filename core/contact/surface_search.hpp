@@ -39,7 +39,7 @@ class PatchSearch<2> {
   int nearest_of_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
 
  protected:
-  PatchSearch(const Surface<2>& patches, const Places<2>& positions);
+  PatchSearch(const Surface<2>& patches, const Places<2>& positions, double rounding);
 
   /// The search's question: which place is nearest to x among the patches that oppose `outward`, if that is not zero?
   /// `own`: set for contact of the curve with itself.
@@ -51,6 +51,7 @@ class PatchSearch<2> {
   Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing from, const Vec<double, 2>& x, int hops) const;
   double gap(const Facing& foot, const Vec<double, 2>& x) const;
+  bool is_inside(const Facing& foot, const Vec<double, 2>& x) const;
   Facing settled(const Facing& foot, const Query& query) const;
   Facing facing_nothing(const Vec<double, 2>& x) const;
   Vec<double, 2> middle_of(int) const { return {0.5, 0}; }
@@ -70,6 +71,7 @@ class PatchSearch<2> {
 
   const Surface<2>& patches_;
   const Places<2>& positions_;
+  double rounding_;    ///< cosine, and share of a patch, that count as nothing
   BoxTree<2> facets_;  ///< from the start to the end of each patch; empty if a position is not finite
   double band_ = 0;    ///< length within which two distances are equal
   double size_ = std::numeric_limits<double>::infinity();  ///< diagonal of the box of the whole curve, length
@@ -84,7 +86,7 @@ class PatchSearch<2> {
 template <>
 class PatchSearch<3> {
  protected:
-  PatchSearch(const Surface<3>& patches, const Places<3>& positions);
+  PatchSearch(const Surface<3>& patches, const Places<3>& positions, double rounding);
 
   struct Query {
     Vec<double, 3> x, outward;
@@ -92,6 +94,7 @@ class PatchSearch<3> {
   Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing at, const Vec<double, 3>& x, int hops) const;
   double gap(const Facing& at, const Vec<double, 3>& x) const;
+  bool is_inside(const Facing& at, const Vec<double, 3>& x) const;
   Facing facing_nothing(const Vec<double, 3>& x) const;
   Vec<double, 2> middle_of(int patch) const {
     return Vec<double, 2>::Constant(patches_[patch].corners == 3 ? 1.0 / 3 : 0.5);
@@ -107,6 +110,7 @@ class PatchSearch<3> {
 
   const Surface<3>& patches_;
   const Places<3>& positions_;
+  double rounding_;  ///< cosine, and share of a patch, that count as nothing
   FaceSearch faces_;
 };
 
@@ -120,8 +124,10 @@ std::array<Facing, 2> places_on_edge(const Surface<3>& patches, const Facing& fa
 template <int D>
 class SurfaceSearch : public PatchSearch<D> {
  public:
-  /// Both arguments must outlive the search.
-  SurfaceSearch(const Surface<D>& patches, const Places<D>& positions) : PatchSearch<D>(patches, positions) {}
+  /// `patches` and `positions` must outlive the search. `rounding`: cosines of angles, and gaps as shares of the
+  /// length of a patch, that count as zero.
+  SurfaceSearch(const Surface<D>& patches, const Places<D>& positions, double rounding = 0)
+      : PatchSearch<D>(patches, positions, rounding) {}
 
   /// The place of the surface that x faces; patch = no_patch where x lies past a border, or beyond a centre of
   /// curvature. Then the distance to the nearest facet is set, and its patch; if x or what is near it is not finite, as
@@ -134,7 +140,7 @@ class SurfaceSearch : public PatchSearch<D> {
   Facing facing(const Vec<double, D>& x, const Vec<double, D>& outward) const {
     const Vec<double, D> any = Vec<double, D>::Zero();
     Facing found = this->nearest_facing({x, outward});
-    if (found.patch != no_patch && outward != any && this->gap(found, x) < 0) {
+    if (found.patch != no_patch && outward != any && this->is_inside(found, x)) {
       const Facing nearest = this->nearest_facing({x, any});
       if (nearest.patch != no_patch && !(this->gap(nearest, x) < 0)) found = {};
     }

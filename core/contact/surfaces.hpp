@@ -121,8 +121,7 @@ Vec<T, D> slave_normal(const std::vector<std::vector<int>>& facets, const Points
 /// it does not, whatever rounding makes of the angle: the side of a block does not oppose the floor that it stands on.
 template <int D>
 bool opposes(const Vec<double, D>& across, const Vec<double, D>& outward) {
-  constexpr double at_right_angle = 1e-6;  // as coordinates of a mesh file are rounded
-  return across.dot(outward) < -at_right_angle * across.norm() * outward.norm();
+  return across.dot(outward) < -mesh_file_rounding * across.norm() * outward.norm();
 }
 
 /// Sets the normal to the bisector of the master normal and the reversed slave normal, and the tangents to match.

@@ -13,6 +13,10 @@ namespace stickslip {
 
 enum class ElementShape { point, bar2, tri3, quad4, tri6, quad8, tet4, hex8, tet10, hex20, hex27 };
 
+/// The rounding of coordinates in a mesh file, as a share of a length, or as an angle. What differs by less counts as
+/// equal. Example: a node at the end of its master, which projects past it by that much, still faces it.
+inline constexpr double mesh_file_rounding = 1e-6;
+
 /// What a mesh is made of.
 enum class Filling { point, bars, continuum };
 

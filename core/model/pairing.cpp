@@ -183,7 +183,11 @@ template <int D>
 void pair_along_surface(Model& model, const Points<double>& points, const Pairing& pairing) {
   auto [master, places] = make_master<D>(model, points, pairing.index, pairing.obstacle, pairing.master.facets);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  const SurfaceSearch<D> search(master.template patches<D>(), places);
+  // At small strain what a point faces is final, so rounding must not decide it: whether a patch at a right angle to
+  // the slave side opposes it, or whether a node on the surface is inside. At finite strain a point has the larger of
+  // two gaps there, which is continuous through the angle.
+  const SurfaceSearch<D> search(master.template patches<D>(), places,
+                                model.scene.finite_strain ? 0 : mesh_file_rounding);
   const bool of_itself = model.scene.contacts[pairing.index].is_of_itself();
   for (int node : pairing.slave.nodes) {
     if (has_no_area(model, points, pairing.slave, node)) continue;

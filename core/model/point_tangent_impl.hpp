@@ -133,6 +133,7 @@ PointTangent<T> open_tangent(const ContactInput<T>& input, int p, const Facing& 
 /// What a point in space takes from the displacements of its nodes, to first order: its own motion; that of the place
 /// that it faces, and of the surface's slopes there; and likewise at its last foot. That are seven sums over the nodes,
 /// however many these are. Rows: an orthonormal basis of the weights of these sums, at most seven; columns: `places`.
+/// pre: it faces a place.
 template <class T>
 Eigen::MatrixXd jets_of(const ContactInput<T>& input, int p, const Facing& facing, const std::vector<int>& places) {
   constexpr double rounding = 1e-13;  // of a row: what is left of one that the others span
@@ -157,7 +158,7 @@ Eigen::MatrixXd jets_of(const ContactInput<T>& input, int p, const Facing& facin
     });
     for (const auto& row : sums.rowwise()) add(row);
   };
-  if (facing.patch != no_patch) add_place(facing.patch, facing.at);  // (what faces nothing bears nothing)
+  add_place(facing.patch, facing.at);
   if (const auto last = earlier(input, p); point.foot >= 0 && last.patch != no_patch)
     add_place(last.patch, stored_place<3>(input.model, point, last.patch, last.foot).at);
   return basis.topRows(count);
@@ -309,7 +310,8 @@ PointTangent<T> point_tangent(const ContactInput<T>& input, int p, const Vector<
   const auto& point = input.model.points[p];
   const bool by_places = detail::has_places(input.model, point);
   const Facing& found = by_places && point.surface >= 0 ? facing[p] : point.facing;
-  if (state == ContactState::open) return detail::open_tangent(input, p, found);
+  const bool faces_nothing = by_places && point.surface >= 0 && found.patch == no_patch;
+  if (state == ContactState::open || faces_nothing) return detail::open_tangent(input, p, found);
   return detail::with_point(input.model, point, [&]<int D, int Tangents>() {
     if (by_places) {
       int faced = 0;

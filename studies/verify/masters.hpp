@@ -275,7 +275,7 @@ class Master {
     const Line line = line_of(p);
     const Vec3 across = right_of(line.tau);
     const double against = seeker.outward.dot(across), xi = line.xi(seeker.x);
-    if (!itself_) return frozen_ || !(against > 0);
+    if (!itself_) return frozen_ || (scene_.finite ? !(against > 0) : verify::opposes(across, seeker.outward));
     if (std::ranges::count(patches[p].vertex, seeker.node) > 0) return false;
     const bool beside = (seeker.x - line.from).dot(across) >= 0 || (xi >= -0.5 && xi <= 1.5);
     return !walls_.at(seeker.node).own[p] && against <= -0.5 * seeker.outward.norm() * line.tau.norm() && beside;
@@ -336,7 +336,10 @@ class Master {
       const double past = end ? place.xi - 1 : -place.xi, still_faced = frozen_ ? 1e-6 : 0.01;  // of a facet
       return is_free && past > still_faced ? Place{} : place;
     };
-    const auto inside = [&](const Place& place) { return (x - position(place)).dot(right_of(position(place, 1))) < 0; };
+    const auto inside = [&](const Place& place) {  // by more than rounding where it is said once for all
+      const Vec3 slope = position(place, 1);
+      return (x - position(place)).dot(right_of(slope)) < -(scene_.finite ? 0 : 1e-6) * slope.squaredNorm();
+    };
     const Place place = facing(seeker);
     if (place.patch < 0 || itself_ || frozen_ || !inside(place) || seeker.outward.isZero()) return place;
     const Place any = facing({seeker.node, x});

@@ -314,6 +314,60 @@ TEST(Verify, HoldsAtTheCornersOfASlaveSide) {
   expect_holds(solve(finite, "monolithic_al"));
 }
 
+/// What is at a right angle to a slave side does not face it, however the bodies are turned: rounding does not decide.
+TEST(Verify, HoldsForSmoothSolesThatAreTurned) {
+  for (const bool solid : {false, true})
+    for (const double angle : {0.5, 1.0, 3.5}) {
+      const auto at = [c = std::cos(angle), s = std::sin(angle)](double x, double y) {
+        return json{c * x - s * y, s * x + c * y};
+      };
+      const auto block = [&](double left, double low, double right, double high, const json& cells) {
+        json mesh = {
+            {"quad",
+             {{"corners", {at(left, low), at(right, low), at(right, high), at(left, high)}}, {"cells", cells}}}};
+        if (solid) mesh = {{"extruded", {{"mesh", mesh}, {"from", low}, {"to", low + 2}, {"cells", 2}}}};
+        return json{{"mesh", mesh}, {"material", linear()}};
+      };
+      json down = {{"x", at(0, -0.02)[0]}, {"y", at(0, -0.02)[1]}}, held = {{"x", 0}, {"y", 0}};
+      if (solid) down["z"] = held["z"] = 0;
+      json scene = {
+          {"bodies", {{"upper", block(1, 1, 3, 2, {3, 2})}, {"lower", block(0, 0, 5, 1, {10, 2})}}},
+          {"contacts", {{"c", {{"slave", "lower.top"}, {"master", "upper.boundary"}, {"surface", "smooth"}}}}},
+          {"supports", {{{"on", "lower.bottom"}, {"move", held}}, {{"on", "upper.top"}, {"move", down}}}},
+          {"responses", {{"N", {{"contact_force", {{"contact", "c"}, {"component", "normal"}}}}}}},
+          {"time", {{"end", 1}, {"steps", 1}}}};
+      if (solid) scene["space"] = "solid";
+      SCOPED_TRACE(angle);
+      expect_holds(solve(scene, "monolithic_al"));
+    }
+}
+
+/// A block slides along a larger one that is the slave: nodes leave its sole and others come onto it. A node that faced
+/// nothing, and that Newton's method takes for one in contact, touches no node of the sole.
+TEST(Verify, HoldsWhereNodesComeOntoASole) {
+  const auto block = [](const char* corners, const char* cells, double from, double to, int layers) {
+    const json plane = {{"quad", {{"corners", json::parse(corners)}, {"cells", json::parse(cells)}}}};
+    return json{{"mesh", {{"extruded", {{"mesh", plane}, {"from", from}, {"to", to}, {"cells", layers}}}}},
+                {"element", "T4"},
+                {"material", {{"neo_hookean", {{"E", 100}, {"nu", 0.3}}}}}};
+  };
+  json scene = {{"space", "solid"},
+                {"strain", "finite"},
+                {"bodies",
+                 {{"upper", block("[[1, 1], [3, 1], [3, 2], [1, 2]]", "[3, 2]", 1, 3, 3)},
+                  {"lower", block("[[0, 0], [4, 0], [4, 1], [0, 1]]", "[8, 2]", 0, 4, 8)}}},
+                {"contacts", {{"c", {{"slave", "lower.top"}, {"master", "upper.boundary"}, {"friction", 0.3}}}}},
+                {"supports",
+                 {{{"on", "lower.bottom"}, {"move", {{"x", 0}, {"y", 0}, {"z", 0}}}},
+                  {{"on", "upper.top"}, {"move", {{"x", 0.3}, {"y", -0.02}, {"z", 0}}}}}},
+                {"responses", {{"N", {{"contact_force", {{"contact", "c"}, {"component", "normal"}}}}}}},
+                {"time", {{"end", 1}, {"steps", 2}}}};
+  for (const char* method : {"penalty", "monolithic_al"}) {
+    SCOPED_TRACE(method);
+    expect_holds(solve(scene, method));
+  }
+}
+
 TEST(Verify, HoldsForSolidBodiesThatSlideOnOneAnother) {
   for (const char* element : {"H8", "T4"})
     for (const auto& surface :
