@@ -9,6 +9,11 @@
 namespace stickslip {
 namespace {
 
+/// Least cosine by which a patch opposes the slave side at finite strain. Why: the wall of a block is at a right angle
+/// to the floor that the block stands on. Each iterate of Newton's method tilts its faces a little, and one that then
+/// opposed the floor would take nodes from the sole. The normal at the corner of a block has 1 / sqrt(3) to its faces.
+constexpr double least_against_a_side = 0.25;
+
 /// Share of an edge at which a place near it is.
 double along_edge(int corners, int edge, const Vec<double, 2>& at) {
   const Vec<double, 2> from = face_corner(corners, edge), way = face_corner(corners, edge + 1) - from;
@@ -161,7 +166,8 @@ bool PatchSearch<3>::is_eligible(int patch, const Query& query) const {
   if (query.outward == Vec<double, 3>::Zero()) return true;
   const auto corner = [&](int k) -> Vec<double, 3> { return positions_.col(patches_[patch].vertices[k]); };
   const Vec<double, 3> across = area_vector<double>(patches_[patch].corners, corner);
-  return across.dot(query.outward) < -rounding_ * across.norm() * query.outward.norm();
+  const double least = rounding_ > 0 ? rounding_ : least_against_a_side;
+  return across.dot(query.outward) < -least * across.norm() * query.outward.norm();
 }
 
 /// Whether a foot is beyond an edge at which the eligible patches end.

@@ -124,8 +124,8 @@ class Faces {
   std::vector<Near> closest(const Vec3& x, const Vec3& outward) const {
     std::vector<std::pair<double, int>> boxes;  // with their distance
     for (int p = 0; p < std::ssize(patches_); ++p) {
-      const auto& [low, high, across] = boxes_[p];
-      if (outward.dot(across) <= 0) boxes.emplace_back((x - x.cwiseMax(low).cwiseMin(high)).norm(), p);
+      const Vec3 &low = boxes_[p][0], &high = boxes_[p][1];
+      if (!looks_away(p, outward)) boxes.emplace_back((x - x.cwiseMax(low).cwiseMin(high)).norm(), p);
     }
     std::ranges::sort(boxes);
     std::vector<Near> near;
@@ -141,7 +141,9 @@ class Faces {
   }
 
   bool looks_away(int p, const Vec3& outward) const {
-    return finite_ ? outward.dot(boxes_[p][2]) > 0 : !opposes(boxes_[p][2], outward);
+    if (!finite_) return !opposes(boxes_[p][2], outward);
+    const Vec3& across = boxes_[p][2];  // more than 75 degrees from facing one another: a wall and its floor
+    return outward.dot(across) > -0.25 * outward.norm() * across.norm();
   }
 
   /// Whether x is past an edge at which the faces that oppose a side end: at finite strain by more than a hundredth of
