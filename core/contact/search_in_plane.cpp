@@ -111,7 +111,8 @@ Facing PatchSearch<2>::past_end(const Facing& foot, const Query& query) const {
 }
 
 /// Newton's method for the foot of x, from the start value `from`. It may pass to the next patch, `hops` times at most,
-/// where the two patches join without a corner. patch = none as in space.
+/// where the two patches join without a corner. patch = none if it does not end, or ends past the patch where it has no
+/// hop left; or if x is beyond a centre of curvature.
 Facing PatchSearch<2>::newton_foot(Facing from, const Vec<double, 2>& x, int hops) const {
   constexpr int most = 50;
   constexpr double longest = 0.5;

@@ -166,7 +166,7 @@ bool PatchSearch<3>::is_eligible(int patch, const Query& query) const {
   if (query.outward == Vec<double, 3>::Zero()) return true;
   const auto corner = [&](int k) -> Vec<double, 3> { return positions_.col(patches_[patch].vertices[k]); };
   const Vec<double, 3> across = area_vector<double>(patches_[patch].corners, corner);
-  const double least = rounding_ > 0 ? rounding_ : least_against_a_side;
+  const double least = rounding_ > 0 ? rounding_ : least_against_a_side;  // (0: finite strain)
   return across.dot(query.outward) < -least * across.norm() * query.outward.norm();
 }
 

@@ -125,7 +125,8 @@ template <int D>
 class SurfaceSearch : public PatchSearch<D> {
  public:
   /// `patches` and `positions` must outlive the search. `rounding`: cosines of angles, and gaps as shares of the
-  /// length of a patch, that count as zero.
+  /// length of a patch, that count as zero; 0 at finite
+  /// strain. In space a patch then opposes the side by more than 104 degrees.
   SurfaceSearch(const Surface<D>& patches, const Places<D>& positions, double rounding = 0)
       : PatchSearch<D>(patches, positions, rounding) {}
 

@@ -140,9 +140,11 @@ class Faces {
     return near;
   }
 
+  /// Whether a face does not oppose a side, if there is one. At small strain one at a right angle does not either; at
+  /// finite strain, where it moves, none that is more than 75 degrees from facing it.
   bool looks_away(int p, const Vec3& outward) const {
     if (!finite_) return !opposes(boxes_[p][2], outward);
-    const Vec3& across = boxes_[p][2];  // more than 75 degrees from facing one another: a wall and its floor
+    const Vec3& across = boxes_[p][2];
     return outward.dot(across) > -0.25 * outward.norm() * across.norm();
   }
 

@@ -374,7 +374,6 @@ TEST(Verify, HoldsWhereABlockStandsOnATable) {
   const auto block = [](const char* low, const char* high, const char* cells) {
     return json{
         {"mesh", {{"box", {{"min", json::parse(low)}, {"max", json::parse(high)}, {"cells", json::parse(cells)}}}}},
-        {"element", "T4"},
         {"material", rubber()}};
   };
   json scene = {{"space", "solid"},
