@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/model/positions.hpp"
 #include "sensitivity/ties/tie.hpp"
 
 namespace stickslip {
@@ -40,24 +41,15 @@ class ChangeReader {
                                    [&](const FlowPoint<Direction>& point) { read_flow_point(point); });
   }
 
-  /// At small strain: the weight of a master node is zero where the slave node leaves its facet.
-  void read_facets() {
-    for (int p = 0; p < static_cast<int>(model_.points.size()); ++p) {
-      const auto& point = model_.points[p];
-      const auto& weights = of_.block.slots.geometry[p].weights;
-      const bool has_nodes = point.master == ContactPoint::Master::facet && point.obstacle < 0;
-      if (!has_nodes || of_.state.contact.state[p] == ContactState::open || point.mesh_size == 0) continue;
-      for (Eigen::Index k = point.slave_nodes; k < weights.size(); ++k) {
-        const Direction share_of_node = weights[k].v < 0 ? -weights[k] : weights[k];
-        lower(share_of_node, share_of_node.v <= weak_margin, scales_.negligible(scales_.of_mesh / point.mesh_size));
-      }
-    }
+  /// At small strain: a slave node leaves the facet, face or patch that it faced at the start.
+  void read_places_of_start() {
+    for (int p = 0; p < static_cast<int>(model_.points.size()); ++p)
+      if (of_.state.contact.state[p] != ContactState::open) read_place_of_start(p);
+    read_vertices();
   }
 
   void read_vertices() {
-    const auto read = [&](const Direction& way, double length) {
-      lower(way, std::abs(way.v) <= weak_margin, scales_.negligible(scales_.of_mesh / length));
-    };
+    const auto read = [&](const Direction& way, double length) { read_way(way, length); };
     const auto for_each_way = model_.dimension == 3 ? for_each_edge_way : for_each_vertex_way;
     for_each_way(model_, of_.block.slots, of_.at.displacement, of_.state, of_.time, read);
   }
@@ -82,6 +74,28 @@ class ChangeReader {
   void lower_way(int parameter, double way) {
     double& side = nearest_(parameter, way < 0 ? 0 : 1);
     side = std::min(side, std::abs(way));
+  }
+
+  /// A way to where another part of the master is faced, as a share of a length.
+  void read_way(const Direction& way, double length) {
+    lower(way, std::abs(way.v) <= weak_margin, scales_.negligible(scales_.of_mesh / length));
+  }
+
+  /// On a facet the way is that to its ends. In a face the weight of a corner is zero where the node leaves the face.
+  void read_place_of_start(int p) {
+    using Master = ContactPoint::Master;
+    const auto& point = model_.points[p];
+    const auto& slots = of_.block.slots;
+    if (point.master == Master::facet) {
+      const auto place = [&](int node) { return detail::start_of(model_, point.obstacle, slots, node); };
+      const auto c = place(point.corners[0]), x = place(point.nodes[0]);
+      const Vec<Direction, 2> along = place(point.corners[1]) - c;
+      const Direction length = norm(along), way = dot(Vec<Direction, 2>(x - c), along) / length;
+      for (const Direction& to : {way, Direction(length - way)}) read_way(to / value(length), value(length));
+    } else if (point.master == Master::faces && point.faces.size() == 1 && point.mesh_size > 0) {
+      const auto& weights = slots.geometry[p].weights;
+      for (Eigen::Index k = point.slave_nodes; k < weights.size(); ++k) read_way(-weights[k], point.mesh_size);
+    }
   }
 
   void read_point(int p) {
@@ -182,7 +196,7 @@ void lower_nearest_change(const Model& model, const Slots<double>& slots, const 
   ChangeReader reader(model, slots, increment, nearest);
   reader.read_contact();
   if (model.effects.plasticity) reader.read_flow();
-  model.slides_on_surfaces() ? reader.read_vertices() : reader.read_facets();
+  model.slides_on_surfaces() ? reader.read_vertices() : reader.read_places_of_start();
 }
 
 }  // namespace stickslip

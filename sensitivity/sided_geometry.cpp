@@ -12,17 +12,19 @@
 namespace stickslip {
 namespace {
 
-/// Whether a point may come to face another part of its master: it is at a vertex, or its segment ends there.
-bool may_leave(const ContactPoint& point) {
+/// Whether a point may come to face another part of its master, which is that of the start: it may be at a vertex, or
+/// its segment may end there. Of what moves with displacements see VertexTie and EdgeTie.
+bool may_leave(const Model& model, const ContactPoint& point) {
   using Master = ContactPoint::Master;
   if (point.master == Master::segments) return point.surface < 0 && point.segments[0].master[0] != Segment::none;
-  return point.master == Master::facet || point.master == Master::vertex || point.master == Master::faces;
+  return point.master != Master::obstacle && !model.slides_on_surfaces();
 }
 
 bool same_part(const ContactPoint& a, const ContactPoint& b) {
   const bool same_faces = std::equal(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(),
                                      [](const auto& one, const auto& other) { return one.is_part_of(other); });
-  return a.master == b.master && a.nodes == b.nodes && a.corners == b.corners && a.segments == b.segments && same_faces;
+  return a.master == b.master && a.nodes == b.nodes && a.corners == b.corners && a.segments == b.segments &&
+         a.facing.patch == b.facing.patch && same_faces;
 }
 
 /// The point with the same slave node; nullptr if there is none.
@@ -50,7 +52,7 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
   return beside.points;
 }
 
-/// Vertices of the polyline that a point faces; those of its first facet are the first two.
+/// Vertices of the polyline that a point faces; the first two are those of a facet.
 std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
   std::vector<int> vertices;
   const auto add = [&](int node) {
@@ -58,6 +60,9 @@ std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
   };
   std::for_each(point.corners.begin(), point.corners.end(), add);
   for (const auto& segment : point.segments) std::for_each(segment.master.begin(), segment.master.end(), add);
+  if (point.surface >= 0 && model.surfaces[point.surface].is_rigid())
+    for (int vertex : model.surfaces[point.surface].vertices(point.facing.patch))
+      if (vertex != no_vertex) vertices.push_back(vertex);
   return vertices;
 }
 
@@ -65,7 +70,7 @@ std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
 double speed(const Model& model, const Points<Direction>& points, const Numbers<Direction>& numbers) {
   double fastest = 0, size = std::numeric_limits<double>::infinity();
   for (const auto& point : model.points) {
-    if (!may_leave(point)) continue;
+    if (!may_leave(model, point)) continue;
     size = point.mesh_size > 0 ? std::min(size, point.mesh_size) : size;
     for (const auto* nodes : {&point.nodes, &point.corners})
       for (int node : *nodes)
@@ -114,7 +119,8 @@ bool meets(const PointGeometry<Direction>& a, const PointGeometry<Direction>& b,
 SidedPairing sided_pairing(const Model& model, int parameter, double side) {
   constexpr double step = 1e-7, beyond_end = 2e-6;  // widths: a vertex 1e-9 (at_facet_end), a free end 1e-6
   SidedPairing out;
-  if (std::none_of(model.points.begin(), model.points.end(), may_leave)) return out;
+  const auto may = [&](const ContactPoint& point) { return may_leave(model, point); };
+  if (std::none_of(model.points.begin(), model.points.end(), may)) return out;
   const auto numbers = seeded(model.scene, {parameter});
   const auto points = initial_points(model, numbers);
   const double fastest = speed(model, points, numbers);
@@ -122,13 +128,14 @@ SidedPairing sided_pairing(const Model& model, int parameter, double side) {
   out.points = paired_beside(model, points, numbers, side * step / fastest);
   out.kink = out.points.size() != model.points.size();
   for (const auto& point : model.points) {
-    if (!may_leave(point)) continue;
+    if (!may_leave(model, point)) continue;
     const auto* other = counterpart(out.points, point);
     out.kink |= !other || !same_part(*other, point);
   }
   const auto beyond = paired_beside(model, points, numbers, side * beyond_end / fastest);
   for (std::size_t p = 0; p < model.points.size(); ++p)
-    if (may_leave(model.points[p]) && !counterpart(beyond, model.points[p])) out.leaving.push_back(static_cast<int>(p));
+    if (may_leave(model, model.points[p]) && !counterpart(beyond, model.points[p]))
+      out.leaving.push_back(static_cast<int>(p));
   const auto joins = [&](const ContactPoint& point) {
     return !counterpart(model.points, point) && !counterpart(out.points, point);
   };
@@ -145,7 +152,7 @@ bool take_side(const Model& model, const SidedPairing& pairing, const std::vecto
   for (std::size_t p = 0; p < model.points.size(); ++p) {
     const auto& point = model.points[p];
     const auto* other = counterpart(pairing.points, point);
-    if (!may_leave(point) || (other && same_part(*other, point))) continue;
+    if (!may_leave(model, point) || (other && same_part(*other, point))) continue;
     std::optional<PointGeometry<Direction>> geometry;
     if (other) geometry = on_nodes(detail::initial_geometry(model, *other, slots), other->nodes, point.nodes);
     const double size = point.mesh_size > 0 ? point.mesh_size : 1;

@@ -15,8 +15,8 @@ auto position_in(const Places<2>& positions) {
 
 }  // namespace
 
-PatchSearch<2>::PatchSearch(const Surface<2>& patches, const Places<2>& positions, double rounding)
-    : patches_(patches), positions_(positions), rounding_(rounding) {
+PatchSearch<2>::PatchSearch(const Surface<2>& patches, const Places<2>& positions)
+    : patches_(patches), positions_(positions) {
   if (!positions.allFinite()) return;  // Newton tried an iterate that overflows
   const int count = static_cast<int>(patches.size());
   facets_ = BoxTree<2>(count, [this](int patch) {  // a facet of zero length has any normal
@@ -39,7 +39,7 @@ bool PatchSearch<2>::may_be_eligible(const Bounds<2>& box, const Query& query) c
   const Vec<double, 2>& outward = query.outward;
   const Vec<double, 2> least =
       (outward.array() * box.normal_low.array()).min(outward.array() * box.normal_high.array());
-  if (least.sum() > (rounding - (query.own ? least_against : rounding_)) * outward.norm()) return false;
+  if (least.sum() > (rounding - query.least_against()) * outward.norm()) return false;
   if (!query.own) return true;
   double most = 0;  // upper bound of the gap of x to the facets of the box
   for (int i = 0; i < 2; ++i) {
@@ -53,7 +53,7 @@ bool PatchSearch<2>::may_be_eligible(const Bounds<2>& box, const Query& query) c
 bool PatchSearch<2>::is_eligible(int patch, const Query& query) const {
   const Vec<double, 2> a = vertex(patch, 0), tau = vertex(patch, 1) - a, &outward = query.outward;
   const double along = outward[0] * tau[1] - outward[1] * tau[0];  // facet length x outward . facet normal
-  if (along > -(query.own ? least_against : rounding_) * outward.norm() * tau.norm()) return false;
+  if (along > -query.least_against() * outward.norm() * tau.norm()) return false;
   if (!query.own) return true;
   if (!query.own->may_face(patches_, patch)) return false;
   const Vec<double, 2> off = query.x - a;
@@ -164,12 +164,17 @@ Facing PatchSearch<2>::nearest_facing(const Query& query) const {
   return ends ? past_end(foot, query) : foot;
 }
 
-double PatchSearch<2>::gap(const Facing& foot, const Vec<double, 2>& x) const {
-  return foot_on_patch<double>(patches_[foot.patch], foot.at, x, position_in(positions_)).gap;
+/// The gap in lengths of the patch.
+double PatchSearch<2>::share_outside(const Facing& foot, const Vec<double, 2>& x) const {
+  const double gap = foot_on_patch<double>(patches_[foot.patch], foot.at, x, position_in(positions_)).gap;
+  return gap / (vertex(foot.patch, 1) - vertex(foot.patch, 0)).norm();
 }
 
-bool PatchSearch<2>::is_inside(const Facing& foot, const Vec<double, 2>& x) const {
-  return gap(foot, x) < -rounding_ * (vertex(foot.patch, 1) - vertex(foot.patch, 0)).norm();
+/// Normal of a patch at a foot, of any length.
+Vec<double, 2> PatchSearch<2>::normal(const Facing& foot) const {
+  const auto w = detail::patch_weights<double>(patches_[foot.patch], foot.at[0]);
+  const Vec<double, 2> slope = detail::on_patch<double>(patches_[foot.patch], w.slope, position_in(positions_));
+  return {slope[1], -slope[0]};
 }
 
 Facing PatchSearch<2>::facing_nothing(const Vec<double, 2>& x) const {

@@ -9,11 +9,6 @@
 namespace stickslip {
 namespace {
 
-/// Least cosine by which a patch opposes the slave side at finite strain. Why: the wall of a block is at a right angle
-/// to the floor that the block stands on. Each iterate of Newton's method tilts its faces a little, and one that then
-/// opposed the floor would take nodes from the sole. The normal at the corner of a block has 1 / sqrt(3) to its faces.
-constexpr double least_against_a_side = 0.25;
-
 /// Share of an edge at which a place near it is.
 double along_edge(int corners, int edge, const Vec<double, 2>& at) {
   const Vec<double, 2> from = face_corner(corners, edge), way = face_corner(corners, edge + 1) - from;
@@ -74,11 +69,8 @@ std::array<Facing, 2> places_on_edge(const Surface<3>& patches, const Facing& fa
           facing_on_edge(patches, patch.across[edge], patch.across_edge[edge], 1 - share)};
 }
 
-PatchSearch<3>::PatchSearch(const Surface<3>& patches, const Places<3>& positions, double rounding)
-    : patches_(patches),
-      positions_(positions),
-      rounding_(rounding),
-      faces_(positions, faces_of(patches), borders_of(patches)) {}
+PatchSearch<3>::PatchSearch(const Surface<3>& patches, const Places<3>& positions)
+    : patches_(patches), positions_(positions), faces_(positions, faces_of(patches), borders_of(patches)) {}
 
 /// Vectors from x to the vertices of a patch.
 Eigen::Matrix3Xd PatchSearch<3>::arms(int patch, const Vec<double, 3>& x) const {
@@ -94,9 +86,30 @@ double PatchSearch<3>::gap(const Facing& at, const Vec<double, 3>& x) const {
   return -y.col(0).dot(cross<double>(y.col(1), y.col(2)).normalized());
 }
 
-bool PatchSearch<3>::is_inside(const Facing& at, const Vec<double, 3>& x) const {
+/// The gap in lengths of the first edge of the patch.
+double PatchSearch<3>::share_outside(const Facing& at, const Vec<double, 3>& x) const {
   const auto& corners = patches_[at.patch].vertices;
-  return gap(at, x) < -rounding_ * (positions_.col(corners[1]) - positions_.col(corners[0])).norm();
+  return gap(at, x) / (positions_.col(corners[1]) - positions_.col(corners[0])).norm();
+}
+
+/// Whether x is outside of a facet that it is nearest to. Far past its edges a patch has no foot.
+bool PatchSearch<3>::is_outside_of_facets(const Vec<double, 3>& x) const {
+  const auto near = faces_.nearest(x, [](int) { return true; });
+  return std::any_of(near.begin(), near.end(),
+                     [&](const Near& at) { return across(at.face).dot(x - at.position) > 0; });
+}
+
+/// Area vector of the facet of a patch.
+Vec<double, 3> PatchSearch<3>::across(int patch) const {
+  return area_vector<double>(patches_[patch].corners,
+                             [&](int k) -> Vec<double, 3> { return positions_.col(patches_[patch].vertices[k]); });
+}
+
+/// Normal of a patch at a foot, of any length.
+Vec<double, 3> PatchSearch<3>::normal(const Facing& at) const {
+  const Eigen::Matrix3Xd y =
+      arms(at.patch, Vec<double, 3>::Zero()) * place_weights(patches_[at.patch], at.at).middleCols<2>(1);
+  return cross<double>(y.col(0), y.col(1));
 }
 
 /// Newton's method for the foot of x, from the start value `at`. It may pass to the next patch, `hops` times at most,
@@ -163,11 +176,7 @@ Facing PatchSearch<3>::larger_gap(const std::vector<Facing>& feet, const Vec<dou
 }
 
 bool PatchSearch<3>::is_eligible(int patch, const Query& query) const {
-  if (query.outward == Vec<double, 3>::Zero()) return true;
-  const auto corner = [&](int k) -> Vec<double, 3> { return positions_.col(patches_[patch].vertices[k]); };
-  const Vec<double, 3> across = area_vector<double>(patches_[patch].corners, corner);
-  const double least = rounding_ > 0 ? rounding_ : least_against_a_side;  // (0: finite strain)
-  return across.dot(query.outward) < -least * across.norm() * query.outward.norm();
+  return query.outward == Vec<double, 3>::Zero() || opposes<3>(across(patch), query.outward);
 }
 
 /// Whether a foot is beyond an edge at which the eligible patches end.

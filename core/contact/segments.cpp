@@ -5,12 +5,13 @@
 #include <limits>
 
 #include "core/contact/own_vertex.hpp"
+#include "core/contact/surfaces.hpp"
 
 namespace stickslip {
 namespace {
 
 /// Share of the slave facet's length below which two breakpoints are one. Also the least cosine at which a master facet
-/// is opposite to the slave facet.
+/// looks the way of the slave facet.
 constexpr double band = 1e-9;
 
 /// Share of the slave facet's length within which an end of the master is an end of the slave facet. Why: sides that
@@ -57,7 +58,7 @@ Shadows shadows(const Points<double>& points, const Vec<double, 2>& a, const Vec
                 const std::vector<double>& depths) {
   Shadows out;
   const Vec<double, 2> nu(tau[1], -tau[0]);
-  const double least = (depths.empty() ? band : least_against) * nu.norm();
+  const double least = (depths.empty() ? least_against_a_side : least_against) * nu.norm();
   for (std::size_t f = 0; f < masters.size(); ++f) {
     const auto& facet = masters[f];
     const Vec<double, 2> c = points.col(facet[0]), d = points.col(facet[1]), along = d - c;

@@ -8,6 +8,8 @@
 ///   psi_j   linear on the slave facets of node j; 1 on a facet whose other node carries no multiplier
 ///   x_s, y  point of the slave facet, and its foot on the master along the normal of the slave facet
 ///
+/// Where the two facets are steep to one another, dA is weighed (weight_of_angle()).
+///
 /// The traction field is sum psi_j t_j, and its work is sum A_j t_j . w_j. So a uniform pressure passes between any two
 /// meshes. The result is a PointGeometry, as in node-to-segment contact, with more nodes and other weights. The kernel,
 /// the methods and their derivatives do not distinguish the two.
@@ -71,12 +73,22 @@ std::vector<Segment> facing_segments(const Points<double>& points, const std::ar
                                      const std::vector<std::vector<int>>& masters, const std::vector<int>& ends = {},
                                      const std::vector<double>& depths = {});
 
+/// Weight of what faces a slave facet, by the cosine c with which their normals oppose one another: 0 at
+/// least_against_a_side, 1 from twice that on, s^2 (3 - 2 s) between them, s from 0 to 1. Why: beyond the corner of a
+/// block a slave facet that dips below its sole sees the wall, far away. This would lift the mean gap, so that the node
+/// lost its force; and if the wall counted at once, the gap would jump as the facet turns.
+template <class T>
+T weight_of_angle(const Vec<T, 2>& slave_normal, const Vec<T, 2>& master_normal) {
+  const T s = (-dot(slave_normal, master_normal) - T(least_against_a_side)) / T(least_against_a_side);
+  return value(s) <= 0 ? T(0) : value(s) >= 1 ? T(1) : T(s * s * (T(3) - T(2) * s));
+}
+
 /// A Gauss point of a segment.
 template <class T>
 struct IntegrationPoint {
   T xi{};            ///< coordinate along the slave facet: 0 at its first node, 1 at its second
   T slave_length{};  ///< initial length of the slave facet
-  T area{};          ///< psi dA times the Gauss weight
+  T area{};          ///< psi dA times the Gauss weight and weight_of_angle()
   detail::Foot<T> foot;
 };
 
@@ -152,7 +164,8 @@ SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, con
           facets ? detail::foot_on_facet<T, S>(*facets, s, at.moved, slave.bulge.is_curved)
                  : rigid_foot(at.start, Vec<T, 2>(slave.a.moved + at.moved));
       const T psi = segment.sole_carrier ? T(1) : segment.carrier == 0 ? T(1) - s : s;
-      const T dA = point.area = psi * (to - from) * at.stretch * T(weight[q]) * depth.at(at.start[0]);
+      const T angle = facets ? weight_of_angle<T>(at.normal, foot.normal) : T(1);
+      const T dA = point.area = psi * (to - from) * at.stretch * T(weight[q]) * depth.at(at.start[0]) * angle;
       sums.area += dA;
       share_along(segment.slave, segment.slave_edge, slave.bulge.is_curved, s, dA);
       if (!rigid) share_along(segment.master, segment.master_edge, facets->bulge.is_curved, foot.eta, -dA);

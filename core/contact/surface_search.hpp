@@ -8,6 +8,7 @@
 #include "core/contact/box_tree.hpp"
 #include "core/contact/face_search.hpp"
 #include "core/contact/own_vertex.hpp"
+#include "core/contact/surfaces.hpp"
 
 namespace stickslip {
 
@@ -39,7 +40,7 @@ class PatchSearch<2> {
   int nearest_of_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
 
  protected:
-  PatchSearch(const Surface<2>& patches, const Places<2>& positions, double rounding);
+  PatchSearch(const Surface<2>& patches, const Places<2>& positions);
 
   /// The search's question: which place is nearest to x among the patches that oppose `outward`, if that is not zero?
   /// `own`: set for contact of the curve with itself.
@@ -47,11 +48,14 @@ class PatchSearch<2> {
     Vec<double, 2> x, outward;
     const OwnVertex* own = nullptr;
     int last = no_patch;
+    /// Cosine by which a patch must oppose `outward`.
+    double least_against() const { return own ? stickslip::least_against : least_against_a_side; }
   };
   Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing from, const Vec<double, 2>& x, int hops) const;
-  double gap(const Facing& foot, const Vec<double, 2>& x) const;
-  bool is_inside(const Facing& foot, const Vec<double, 2>& x) const;
+  double share_outside(const Facing& foot, const Vec<double, 2>& x) const;
+  bool is_outside_of_facets(const Vec<double, 2>&) const { return false; }  // (past a free end, or far inside)
+  Vec<double, 2> normal(const Facing& foot) const;
   Facing settled(const Facing& foot, const Query& query) const;
   Facing facing_nothing(const Vec<double, 2>& x) const;
   Vec<double, 2> middle_of(int) const { return {0.5, 0}; }
@@ -71,7 +75,6 @@ class PatchSearch<2> {
 
   const Surface<2>& patches_;
   const Places<2>& positions_;
-  double rounding_;    ///< cosine, and share of a patch, that count as nothing
   BoxTree<2> facets_;  ///< from the start to the end of each patch; empty if a position is not finite
   double band_ = 0;    ///< length within which two distances are equal
   double size_ = std::numeric_limits<double>::infinity();  ///< diagonal of the box of the whole curve, length
@@ -86,15 +89,16 @@ class PatchSearch<2> {
 template <>
 class PatchSearch<3> {
  protected:
-  PatchSearch(const Surface<3>& patches, const Places<3>& positions, double rounding);
+  PatchSearch(const Surface<3>& patches, const Places<3>& positions);
 
   struct Query {
     Vec<double, 3> x, outward;
   };
   Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing at, const Vec<double, 3>& x, int hops) const;
-  double gap(const Facing& at, const Vec<double, 3>& x) const;
-  bool is_inside(const Facing& at, const Vec<double, 3>& x) const;
+  double share_outside(const Facing& at, const Vec<double, 3>& x) const;
+  bool is_outside_of_facets(const Vec<double, 3>& x) const;
+  Vec<double, 3> normal(const Facing& at) const;
   Facing facing_nothing(const Vec<double, 3>& x) const;
   Vec<double, 2> middle_of(int patch) const {
     return Vec<double, 2>::Constant(patches_[patch].corners == 3 ? 1.0 / 3 : 0.5);
@@ -102,15 +106,16 @@ class PatchSearch<3> {
 
  private:
   using Near = FaceSearch::Near;
+  Vec<double, 3> across(int patch) const;
   bool is_eligible(int patch, const Query& query) const;
   bool is_past_end(const Facing& at, const Query& query) const;
   Facing beyond_edges(const Facing& at, const Query& query) const;
+  double gap(const Facing& at, const Vec<double, 3>& x) const;
   Facing larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const;
   Eigen::Matrix3Xd arms(int patch, const Vec<double, 3>& x) const;
 
   const Surface<3>& patches_;
   const Places<3>& positions_;
-  double rounding_;  ///< cosine, and share of a patch, that count as nothing
   FaceSearch faces_;
 };
 
@@ -124,26 +129,32 @@ std::array<Facing, 2> places_on_edge(const Surface<3>& patches, const Facing& fa
 template <int D>
 class SurfaceSearch : public PatchSearch<D> {
  public:
-  /// `patches` and `positions` must outlive the search. `rounding`: cosines of angles, and gaps as shares of the
-  /// length of a patch, that count as zero; 0 at finite
-  /// strain. In space a patch then opposes the side by more than 104 degrees.
-  SurfaceSearch(const Surface<D>& patches, const Places<D>& positions, double rounding = 0)
-      : PatchSearch<D>(patches, positions, rounding) {}
+  /// `patches` and `positions` must outlive the search.
+  SurfaceSearch(const Surface<D>& patches, const Places<D>& positions) : PatchSearch<D>(patches, positions) {}
 
   /// The place of the surface that x faces; patch = no_patch where x lies past a border, or beyond a centre of
   /// curvature. Then the distance to the nearest facet is set, and its patch; if x or what is near it is not finite, as
   /// in an iterate that Newton rejects, the distance is infinite.
   ///
-  ///   outward  outward normal of the slave side at x, any length. Only patches whose normal opposes it are eligible;
-  ///            if it is zero, all patches are
+  ///   outward  outward normal of the slave side at x, any length. Only patches whose normal opposes it are eligible
+  ///            (surfaces.hpp, opposes()); if it is zero, all patches are
   ///
-  /// If the nearest of all patches has x outside of the solid, x is not inside of the solid by a farther patch.
-  Facing facing(const Vec<double, D>& x, const Vec<double, D>& outward) const {
+  ///   comes_on  it faced nothing in the last increment
+  ///
+  /// If the nearest of all patches has x outside of the solid, x is not inside of it by a farther patch. But outside of
+  /// the wall of a block by no more than what is still faced past the end of its sole, x is inside by the sole; unless
+  /// it comes on, as what a block that slides has before it.
+  Facing facing(const Vec<double, D>& x, const Vec<double, D>& outward, bool comes_on = false) const {
     const Vec<double, D> any = Vec<double, D>::Zero();
     Facing found = this->nearest_facing({x, outward});
-    if (found.patch != no_patch && outward != any && this->is_inside(found, x)) {
+    if (found.patch != no_patch && outward != any && this->share_outside(found, x) < -mesh_file_rounding) {
       const Facing nearest = this->nearest_facing({x, any});
-      if (nearest.patch != no_patch && !(this->gap(nearest, x) < 0)) found = {};
+      const bool is_wall =
+          !comes_on && nearest.patch != no_patch && !opposes<D>(this->normal(nearest), this->normal(found));
+      const bool is_outside = nearest.patch == no_patch
+                                  ? this->is_outside_of_facets(x)
+                                  : this->share_outside(nearest, x) >= (is_wall ? past_end_of_surface : 0);
+      if (is_outside) found = {};
     }
     if constexpr (D == 2) found = this->settled(found, {x, outward});
     return found.patch != no_patch ? found : this->facing_nothing(x);

@@ -117,11 +117,16 @@ Vec<T, D> slave_normal(const std::vector<std::vector<int>>& facets, const Points
   return n;
 }
 
-/// Whether a master of normal `across` opposes a slave side at small strain. Lengths are any. One at a right angle to
-/// it does not, whatever rounding makes of the angle: the side of a block does not oppose the floor that it stands on.
+/// Cosine by which a master's normal must oppose that of a slave side: the two make more than 104 degrees. Why: the
+/// wall of a block is at a right angle to the floor that the block stands on, but for rounding, and deformation tilts
+/// it. If it opposed the floor, it would take nodes and parts of facets from the sole. At the corner of a block the
+/// mean normal of the side still opposes what each of its three faces touches, by 1 / sqrt(3).
+inline constexpr double least_against_a_side = 0.25;
+
+/// Whether a master of normal `across` opposes a slave side. Lengths are any.
 template <int D>
 bool opposes(const Vec<double, D>& across, const Vec<double, D>& outward) {
-  return across.dot(outward) < -mesh_file_rounding * across.norm() * outward.norm();
+  return across.dot(outward) < -least_against_a_side * across.norm() * outward.norm();
 }
 
 /// Sets the normal to the bisector of the master normal and the reversed slave normal, and the tangents to match.

@@ -108,7 +108,7 @@ void find_along_surface(const ContactInput<T>& input, int surface, const Vector<
         found[p] = now.search.facing_itself(x, now.outward(point), point.own, last_faced(input, p));
         continue;
       }
-    found[p] = now.search.facing(x, now.outward(point));
+    found[p] = now.search.facing(x, now.outward(point), !input.previous.faces[p]);
   }
 }
 

@@ -183,11 +183,7 @@ template <int D>
 void pair_along_surface(Model& model, const Points<double>& points, const Pairing& pairing) {
   auto [master, places] = make_master<D>(model, points, pairing.index, pairing.obstacle, pairing.master.facets);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
-  // At small strain what a point faces is final, so rounding must not decide it: whether a patch at a right angle to
-  // the slave side opposes it, or whether a node on the surface is inside. At finite strain a point has the larger of
-  // two gaps there, which is continuous through the angle.
-  const SurfaceSearch<D> search(master.template patches<D>(), places,
-                                model.scene.finite_strain ? 0 : mesh_file_rounding);
+  const SurfaceSearch<D> search(master.template patches<D>(), places);
   const bool of_itself = model.scene.contacts[pairing.index].is_of_itself();
   for (int node : pairing.slave.nodes) {
     if (has_no_area(model, points, pairing.slave, node)) continue;
@@ -309,10 +305,7 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   }
   const bool has_facets =
       pairing.obstacle < 0 || std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape);
-  // (pairs of "between" are whole boundaries: in the plane their corners are places of a curve)
-  const bool is_pair = model.dimension == 2 && !contact.group.empty();
-  const bool slides =
-      model.scene.finite_strain || contact.smoothing != Smoothing::none || is_pair || contact.is_of_itself();
+  const bool slides = model.scene.finite_strain || contact.smoothing != Smoothing::none || contact.is_of_itself();
   if (has_facets && slides && !contact.segment)
     return with_dimension(model.dimension, [&]<int D>() { pair_along_surface<D>(model, points, pairing); });
   if (!contact.segment) return pair_nodes(model, points, pairing);

@@ -37,6 +37,11 @@ struct SolvedState {
   double largest;  ///< traction_scale() of the run so far. Why of the run: what was moved may be back where it was
 };
 
+/// What a point faces of its surface; at small strain that of the start.
+inline const Facing& faced_at(const Model& model, const State<double>& at, int point) {
+  return at.contact.facing.empty() ? model.points[point].facing : at.contact.facing[point];
+}
+
 /// Whether the gap of a point matters to a derivative: it presses or nearly touches, or a response asks for gaps.
 bool has_a_say(const SolvedState& of, int point);
 /// Whether a point presses by more than what is negligible.

@@ -53,17 +53,15 @@ Jump jump_between(const Shape& a, const Shape& b) {
 
 bool is_along_surface(const Model& model, const State<double>& state, int p) {
   const auto& point = model.points[p];
-  return model.dimension == 3 && model.slides_on_surfaces() && point.surface >= 0 &&
-         state.contact.facing[p].patch != no_patch;
+  return model.dimension == 3 && point.surface >= 0 && faced_at(model, state, p).patch != no_patch;
 }
 
-/// The foot of a point on the patch that it faces, in a scalar.
-template <class T>
-SurfacePlace<T, 3> foot_of(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time, int p,
-                           const Facing& facing) {
+/// The foot of a point on the patch that it faces, in a scalar. `positions`: detail::Positions.
+template <class T, class At>
+SurfacePlace<T, 3> foot_of(const At& positions, int p, const Facing& facing) {
+  const Model& model = positions.model;
   const auto& point = model.points[p];
   const auto& surface = model.surfaces[point.surface];
-  const auto positions = detail::positions_at<3>(model, slots, compact, time);
   const auto vertex = [&](int v) { return positions.template vertex<3>(surface, v); };
   return foot_on_patch<T, T>(surface.patches<3>()[facing.patch], detail::foot_reference<3>(model, point, facing.patch),
                              facing.at, positions.template slave<3>(point), vertex)
@@ -140,8 +138,8 @@ void EdgeTie::set(const Model& model, const Choice& choice, State<double>& at) c
 Verdict EdgeTie::verdict(const SidedDerivative& derivative) const {
   const auto& [of, block, rho, side, scales, flows] = derivative;
   const Facing facing = of.at.contact.facing[point];
-  const auto foot =
-      foot_of(of.model, block.slots, to_compact(of.model, block.current.displacement), of.time, point, facing);
+  const Vector<Direction> now = to_compact(of.model, block.current.displacement);
+  const auto foot = foot_of<Direction>(detail::positions_at<3>(of.model, block.slots, now, of.time), point, facing);
   const auto& patch = *foot.patch;
   const Vector<double> compact = to_compact(of.model, of.at.displacement);
   const auto positions = detail::positions_at<3>(of.model, of.slots, compact, of.time);
@@ -161,32 +159,36 @@ Verdict EdgeTie::verdict(const SidedDerivative& derivative) const {
 void for_each_edge_way(const Model& model, const Slots<Direction>& slots, const Vector<Direction>& displacement,
                        const State<double>& state, double time,
                        const std::function<void(const Direction&, double)>& f) {
-  const Vector<Direction> compact = to_compact(model, displacement);
-  const auto positions = detail::positions_at<3>(model, slots, compact, time);
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (state.contact.state[p] == ContactState::open || !is_along_surface(model, state, p)) continue;
-    const auto& surface = model.surfaces[model.points[p].surface];
-    const auto vertex = [&](int v) -> Placed<double, double, 3> {
-      const auto at = positions.vertex<3>(surface, v);
-      return {values(at.start), values(at.moved)};
-    };
-    const Facing facing = state.contact.facing[p];
-    const auto foot = foot_of(model, slots, compact, time, p, facing);
-    for (int k = 0; k < foot.patch->corners; ++k) {
-      if (foot.patch->across[k] == no_patch) continue;
-      const auto [here, there] = places_on_edge(surface.patches<3>(), facing, k);
-      const Shape a = shape_at(*foot.patch, here.at, vertex),
-                  b = shape_at(surface.patches<3>()[there.patch], there.at, vertex);
-      if (!foot.patch->is_smooth() || jump_between(a, b).is_kink()) f(beyond(foot, k), a.size);
+  const auto visit = [&](const auto& positions) {
+    for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+      if (state.contact.state[p] == ContactState::open || !is_along_surface(model, state, p)) continue;
+      const auto& surface = model.surfaces[model.points[p].surface];
+      const auto vertex = [&](int v) -> Placed<double, double, 3> {
+        const auto at = positions.template vertex<3>(surface, v);
+        return {values(at.start), values(at.moved)};
+      };
+      const Facing facing = faced_at(model, state, p);
+      const auto foot = foot_of<Direction>(positions, p, facing);
+      for (int k = 0; k < foot.patch->corners; ++k) {
+        if (foot.patch->across[k] == no_patch) continue;
+        const auto [here, there] = places_on_edge(surface.patches<3>(), facing, k);
+        const Shape a = shape_at(*foot.patch, here.at, vertex),
+                    b = shape_at(surface.patches<3>()[there.patch], there.at, vertex);
+        if (!foot.patch->is_smooth() || jump_between(a, b).is_kink()) f(beyond(foot, k), a.size);
+      }
     }
-  }
+  };
+  if (!model.slides_on_surfaces()) return visit(detail::positions_of_start(model, slots));
+  const Vector<Direction> compact = to_compact(model, displacement);
+  visit(detail::positions_at<3>(model, slots, compact, time));
 }
 
 double edge_margin(const Model& model, const State<double>& state) {
   double least = std::numeric_limits<double>::infinity();
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (state.contact.state[p] == ContactState::open || !is_along_surface(model, state, p)) continue;
-    const Facing& facing = state.contact.facing[p];
+    if (!model.slides_on_surfaces() || state.contact.state[p] == ContactState::open) continue;
+    if (!is_along_surface(model, state, p)) continue;
+    const Facing& facing = faced_at(model, state, p);
     const Patch<3>& patch = model.surfaces[model.points[p].surface].patches<3>()[facing.patch];
     for (int k = 0; k < patch.corners && !patch.is_smooth(); ++k)
       if (patch.across[k] != no_patch) least = std::min(least, std::abs(beyond_edge(patch, k, facing.at)));

@@ -39,12 +39,13 @@ struct EdgeTie {
 };
 
 /// Calls f(way, length) for each edge of the patch that a closed point faces behind which another patch joins with a
-/// kink: how far its foot is beyond the edge, with its derivative, and the size of the patch.
+/// kink: how far its foot is beyond the edge, with its derivative, and the size of the patch. At small strain surfaces
+/// are where they were at the start.
 void for_each_edge_way(const Model& model, const Slots<Direction>& slots, const Vector<Direction>& displacement,
                        const State<double>& state, double time, const std::function<void(const Direction&, double)>& f);
 
 /// Least distance of the foot of a closed point from an edge of facets that other facets join, in coordinates of its
-/// patch; infinite where no point is on facets.
+/// patch; infinite where no point slides on facets.
 double edge_margin(const Model& model, const State<double>& state);
 
 }  // namespace stickslip

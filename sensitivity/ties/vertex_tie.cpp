@@ -16,13 +16,11 @@ struct VertexGeometry {
 
 double cross(const Vec<double, 2>& a, const Vec<double, 2>& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// `compact`: displacements of the contact nodes.
-template <class T>
-VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, const Vector<T>& compact, double time,
-                                  int p, int first, int second) {
-  const auto& point = model.points[p];
-  const auto& curve = model.surfaces[point.surface];
-  const auto positions = detail::positions_at(model, slots, compact, time);
+/// `positions`: detail::Positions.
+template <class T, class At>
+VertexGeometry<T> vertex_geometry(const At& positions, int p, int first, int second) {
+  const auto& point = positions.model.points[p];
+  const auto& curve = positions.model.surfaces[point.surface];
   const auto placed = [&](int vertex) { return positions.vertex(curve, vertex); };
   const auto& patches = curve.template patches<2>();
   const Placed<T> vertex = placed(patches[first].corner(1));
@@ -40,9 +38,9 @@ VertexGeometry<T> vertex_geometry(const Model& model, const Slots<T>& slots, con
   const auto [before, bend_before] = end_geometry(first, 1);
   const auto [after, bend_after] = end_geometry(second, 0);
   const Vec<T, 2> along = before + after;
-  const T length = norm(facet);
+  const double length = value(norm(facet));
   return {dot(x, along) / (norm(along) * length), std::abs(cross(values(before), values(after))),
-          std::abs(bend_after - bend_before) * value(length), value(length)};
+          std::abs(bend_after - bend_before) * length, length};
 }
 
 /// Whether two patches may have a kink at their vertex: not where they join as one B-spline.
@@ -58,9 +56,9 @@ bool changes_at(const Patch<2>& patch, double bend) {
 template <class F>
 void for_each_vertex(const Model& model, const State<double>& state, int p, F&& f) {
   const auto& point = model.points[p];
-  if (model.dimension == 3 || point.surface < 0 || !point.segments.empty() || state.contact.facing.empty()) return;
+  if (model.dimension == 3 || point.surface < 0 || !point.segments.empty()) return;
   const auto& patches = model.surfaces[point.surface].patches<2>();
-  const int now = state.contact.facing[p].patch;
+  const int now = faced_at(model, state, p).patch;
   if (now == no_patch) return;
   for (const auto& [first, second] : {std::pair(patches[now].across[0], now), std::pair(now, patches[now].across[1])}) {
     if (first == no_patch || second == no_patch || !has_kink(patches[first])) continue;
@@ -80,7 +78,7 @@ void VertexTie::find(const SolvedState& of, std::vector<Tie>& ties) {
     if (!has_a_say(of, p)) continue;
     const bool presses = bears(of, p);
     for_each_vertex(model, state, p, [&, &model = model, &slots = slots, time = time](int first, int second) {
-      const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
+      const auto at = vertex_geometry<double>(detail::positions_at(model, slots, compact, time), p, first, second);
       if (!changes_at(model.surfaces[point.surface].patches<2>()[first], at.bend)) return;
       if (std::abs(at.overshoot) <= weak_margin)
         ties.emplace_back(VertexTie{p, first, second, !presses || at.turn <= straight});
@@ -106,8 +104,9 @@ void VertexTie::set(const Model& model, const Choice& choice, State<double>& at)
 
 Verdict VertexTie::verdict(const SidedDerivative& derivative) const {
   const auto& [of, block, rho, side, scales, flows] = derivative;
-  const auto found = vertex_geometry(of.model, block.slots, to_compact(of.model, block.current.displacement), of.time,
-                                     point, first, second);
+  const Vector<Direction> compact = to_compact(of.model, block.current.displacement);
+  const auto found =
+      vertex_geometry<Direction>(detail::positions_at(of.model, block.slots, compact, of.time), point, first, second);
   const double rate = derivative.rate(found.overshoot);
   const double negligible = scales.negligible(scales.of_mesh / found.length)[0];
   const bool on_second = of.at.contact.facing[point].patch == second;
@@ -119,15 +118,19 @@ Verdict VertexTie::verdict(const SidedDerivative& derivative) const {
 void for_each_vertex_way(const Model& model, const Slots<Direction>& slots, const Vector<Direction>& displacement,
                          const State<double>& state, double time,
                          const std::function<void(const Direction&, double)>& f) {
+  const auto visit = [&](const auto& positions) {
+    for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
+      if (state.contact.state[p] == ContactState::open) continue;
+      for_each_vertex(model, state, p, [&](int first, int second) {
+        const auto at = vertex_geometry<Direction>(positions, p, first, second);
+        const auto& patch = model.surfaces[model.points[p].surface].patches<2>()[first];
+        if (changes_at(patch, at.bend)) f(at.overshoot, at.length);
+      });
+    }
+  };
+  if (!model.slides_on_surfaces()) return visit(detail::positions_of_start(model, slots));
   const Vector<Direction> compact = to_compact(model, displacement);
-  for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (state.contact.state[p] == ContactState::open) continue;
-    for_each_vertex(model, state, p, [&, &model = model, &slots = slots, time = time](int first, int second) {
-      const auto at = vertex_geometry(model, slots, compact, time, p, first, second);
-      const auto& patch = model.surfaces[model.points[p].surface].patches<2>()[first];
-      if (changes_at(patch, at.bend)) f(at.overshoot, at.length);
-    });
-  }
+  visit(detail::positions_at(model, slots, compact, time));
 }
 
 }  // namespace stickslip

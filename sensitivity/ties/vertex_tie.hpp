@@ -35,7 +35,8 @@ struct VertexTie {
 };
 
 /// Calls f(way, length) for each end of the patch that a closed point faces, if another patch joins there with a kink:
-/// its distance past the line that separates the two, with its derivative, over the length of the first.
+/// its distance past the line that separates the two, with its derivative, over the length of the first. At small
+/// strain surfaces are where they were at the start.
 void for_each_vertex_way(const Model& model, const Slots<Direction>& slots, const Vector<Direction>& displacement,
                          const State<double>& state, double time,
                          const std::function<void(const Direction&, double)>& f);

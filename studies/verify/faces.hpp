@@ -44,7 +44,7 @@ class Faces {
     auto near = closest(x, finite_ ? outward : Vec3(0, 0, 0));
     if (near.empty()) return {};
     const Near first = near[0];
-    const bool faces = settle_on(near, x, outward);
+    const bool faces = settle_on(near, seeker);
     if (!faces) return Foot{false, first.y, first.normal}.away_from(x);
     const Near& best = near[0];
     const auto& [p, s, t] = best.place;
@@ -74,6 +74,11 @@ class Faces {
     return y;
   }
   double size(int p) const { return (boxes_[p][1] - boxes_[p][0]).norm(); }
+  /// The gap in lengths of the first edge of the patch.
+  double share_outside(const Near& at) const {
+    const int p = at.place.patch, m = patches_[p].sides();
+    return at.gap / (jet(p, corner_at(m, 1)) - jet(p, corner_at(m, 0))).col(0).norm();
+  }
 
   Near near(int p, const Vec2& at, const Vec3& x) const {
     const Mat3 y = jet(p, at);
@@ -140,22 +145,17 @@ class Faces {
     return near;
   }
 
-  /// Whether a face does not oppose a side, if there is one. At small strain one at a right angle does not either; at
-  /// finite strain, where it moves, none that is more than 75 degrees from facing it.
-  bool looks_away(int p, const Vec3& outward) const {
-    if (!finite_) return !opposes(boxes_[p][2], outward);
-    const Vec3& across = boxes_[p][2];
-    return outward.dot(across) > -0.25 * outward.norm() * across.norm();
-  }
+  bool looks_away(int p, const Vec3& outward) const { return !opposes(boxes_[p][2], outward); }
 
   /// Whether x is past an edge at which the faces that oppose a side end: at finite strain by more than a hundredth of
-  /// a face.
+  /// a face. There a place so far past an edge where the surface goes on smoothly is on no patch: as past a corner.
   bool is_past_border(const Near& here, const Vec3& x, const Vec3& outward) const {
     const auto& [p, s, t] = here.place;
     const Eigen::VectorXd off = from_edges(patches_[p].sides(), s, t);
     for (int j = 0; j < off.size(); ++j) {
       const int other = patches_[p].beyond[j];
-      const bool ends = other == FacePatch::none || (other >= 0 && looks_away(other, outward));
+      const bool ends = other == FacePatch::none || (finite_ && other == FacePatch::smooth) ||
+                        (other >= 0 && looks_away(other, outward));
       if (!ends || off[j] > (finite_ ? -0.01 : at_end)) continue;
       const Vec3 along = jet(p, {s, t}).rightCols<2>() * edge_along(patches_[p].sides(), j);
       if (finite_ || (x - here.y).dot(along.cross(here.normal).normalized()) > 1e-6 * size(p)) return true;
@@ -165,7 +165,8 @@ class Faces {
 
   /// Keeps of the nearest places those that x faces, the best first; whether there is one. What is inside of the solid
   /// by a patch is not where it is outside by a nearer one.
-  bool settle_on(std::vector<Near>& near, const Vec3& x, const Vec3& outward) const {
+  bool settle_on(std::vector<Near>& near, const Seeker& seeker) const {
+    const Vec3 &x = seeker.x, &outward = seeker.outward;
     for (const auto& at : finite_ ? std::exchange(near, {}) : std::vector<Near>{})
       if (const auto on = across(at.place.patch, {at.place.xi, at.place.eta}, Eigen::Matrix2d::Identity(), x))
         near.push_back(this->near(at.place.patch, *on, x));
@@ -175,9 +176,12 @@ class Faces {
     std::ranges::sort(near, {}, [](const Near& at) { return at.place.patch; });
     const double most = std::ranges::max(near, {}, &Near::gap).gap - at_end * size(near[0].place.patch);
     std::iter_swap(near.begin(), std::ranges::find_if(near, [&](const Near& at) { return at.gap >= most; }));
-    if (near[0].gap >= 0 || outward.isZero()) return true;
+    if (share_outside(near[0]) >= -1e-6 || outward.isZero()) return true;
     auto all = closest(x, Vec3::Zero());
-    return !settle_on(all, x, Vec3::Zero()) || all[0].gap <= 0;
+    const bool is_outside = std::ranges::any_of(all, [](const Near& at) { return at.gap > 0; });
+    if (!settle_on(all, {seeker.node, x})) return !is_outside;
+    const bool is_wall = !seeker.comes_on && !opposes(all[0].normal, near[0].normal);  // (a little past a sole's end)
+    return share_outside(all[0]) < (is_wall ? 0.01 : 0);
   }
 
   bool finite_;

@@ -56,6 +56,7 @@ struct Seeker {
   Vec3 x = Vec3::Zero();
   Vec3 outward = Vec3::Zero();  ///< sum of the normals of its facets, times their lengths; zero: it has none
   double size = 0;              ///< mean length of its facets
+  bool comes_on = false;        ///< it faced nothing in the last increment
   std::vector<Vec3> normals;    ///< of which it is the sum
   /// The sum of those that face a normal of the master within 60 degrees; of all if none does.
   Vec3 against(const Vec3& across) const {
@@ -66,9 +67,10 @@ struct Seeker {
   }
 };
 
-/// Whether what has a normal looks against the slave's side at small strain, where one at a right angle does not.
+/// Cosine by which what is faced looks against the slave's side: no more than 75 degrees from facing it.
+constexpr double least_opposed = 0.25;
 inline bool opposes(const Vec3& normal, const Vec3& outward) {
-  return outward.isZero() || normal.dot(outward) < -1e-6 * normal.norm() * outward.norm();
+  return outward.isZero() || normal.dot(outward) < -least_opposed * normal.norm() * outward.norm();
 }
 
 /// A place of contact: a slave node, or the multiplier of one. Its weights are 1 of the slave, -N_i of the master. The
@@ -106,7 +108,7 @@ class Master {
     const std::string kind = surface.is_object() ? surface.value("smooth", "catmull_rom") : surface.get<std::string>();
     smooth = kind == "faceted" ? 0 : kind == "b_spline" ? 2 : 1;
     if (surface.is_object()) corner = surface.value("corner", corner);
-    frozen_ = !scene.finite && smooth == 0 && !contact.contains("between") && !itself_;
+    frozen_ = !scene.finite && smooth == 0 && !itself_;
     if (!rigid() && scene.dimension == 2) facets = facets_of(scene.side(master));
     const Json points = part(part(obstacle, "polyline"), "points");  // the solid is on its right
     at.resize(3, std::ssize(points));
@@ -275,7 +277,7 @@ class Master {
     const Line line = line_of(p);
     const Vec3 across = right_of(line.tau);
     const double against = seeker.outward.dot(across), xi = line.xi(seeker.x);
-    if (!itself_) return frozen_ || (scene_.finite ? !(against > 0) : verify::opposes(across, seeker.outward));
+    if (!itself_) return frozen_ || verify::opposes(across, seeker.outward);
     if (std::ranges::count(patches[p].vertex, seeker.node) > 0) return false;
     const bool beside = (seeker.x - line.from).dot(across) >= 0 || (xi >= -0.5 && xi <= 1.5);
     return !walls_.at(seeker.node).own[p] && against <= -0.5 * seeker.outward.norm() * line.tau.norm() && beside;
@@ -336,14 +338,16 @@ class Master {
       const double past = end ? place.xi - 1 : -place.xi, still_faced = frozen_ ? 1e-6 : 0.01;  // of a facet
       return is_free && past > still_faced ? Place{} : place;
     };
-    const auto inside = [&](const Place& place) {  // by more than rounding where it is said once for all
+    const auto outside = [&](const Place& place) {  // share of a facet
       const Vec3 slope = position(place, 1);
-      return (x - position(place)).dot(right_of(slope)) < -(scene_.finite ? 0 : 1e-6) * slope.squaredNorm();
+      return (x - position(place)).dot(right_of(slope)) / slope.squaredNorm();
     };
     const Place place = facing(seeker);
-    if (place.patch < 0 || itself_ || frozen_ || !inside(place) || seeker.outward.isZero()) return place;
+    if (place.patch < 0 || itself_ || frozen_ || outside(place) >= -1e-6 || seeker.outward.isZero()) return place;
     const Place any = facing({seeker.node, x});
-    return any.patch >= 0 && !inside(any) ? Place{} : place;
+    if (any.patch < 0) return place;
+    const bool is_wall = !seeker.comes_on && !verify::opposes(right_of(position(any, 1)), right_of(position(place, 1)));
+    return outside(any) >= (is_wall ? 0.01 : 0) ? Place{} : place;  // (still faced a little past the end of a sole)
   }
 
   /// Small strain, at a vertex of facets: the bisector of the two, and half of the slide along each of them.

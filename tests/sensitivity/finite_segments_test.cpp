@@ -3,6 +3,7 @@
 /// step.
 #include <gtest/gtest.h>
 
+#include "core/contact/segments.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "sensitivity/vertex_margin.hpp"
 #include "tests/support/blocks.hpp"
@@ -325,6 +326,47 @@ TEST(FiniteSegments, TellWhereAnEndOfTheSlaveMeetsABendOfTheMaster) {
     dofs(end) = s.slots.points.col(vertex).head<2>() + dofs(vertex) - s.slots.points.col(end).head<2>();
   }
   EXPECT_LE(integration_margin(s.model, s.slots, state, 2), weak_margin);
+}
+
+// --- walls -----------------------------------------------------------------------------------------------------------
+
+/// A block on a table that is the slave. Its walls lean outwards from upright by `lean` of their height of 1.
+Scene leaning_block(const std::string& master, double lean) {
+  Scene s = empty({{1, 2}});
+  QuadMesh block;
+  block.corners = {
+      std::array<Number, 2>{1.05, 1.0}, {3.1, 1.0}, {parameter(s, "right", 3.1 + lean), 2.0}, {1.05 - lean, 2.0}};
+  block.cells = {3, 2};
+  s.bodies = {rubber_body(scenes::box_body("table", {0, 0}, {5, 1}, {20, 4}), s, "E", 100),
+              rubber_body({"block", block, LinearElastic{1.0, 0.0}, "", 1.0}, s, "E_block", 100)};
+  s.contacts = {joint(s, "table.top", "block." + master, 0.3)};
+  s.supports = {
+      scenes::support("table.bottom", {{'x', still}, {'y', still}}),
+      scenes::support("block.top", {{'x', still}, {'y', table({{0, 0.0}, {1, parameter(s, "down", -0.02)}})}})};
+  s.responses = {response("y", Kind::reaction, "block.top", "y")};
+  return s;
+}
+
+/// From 104 to 120 degrees between the normals walls count in part, the more the farther they lean.
+TEST(FiniteSegments, WallsCountAsFarAsTheyOpposeTheSlave) {
+  const auto weight = [](double cosine) {
+    return weight_of_angle(Vec<double, 2>(0, 1), Vec<double, 2>(std::sqrt(1 - cosine * cosine), -cosine));
+  };
+  EXPECT_EQ(weight(-0.3), 0);
+  EXPECT_EQ(weight(0.25), 0);
+  EXPECT_NEAR(weight(0.375), 0.5, 1e-15);  // a rounding of the cosine
+  EXPECT_EQ(weight(0.5), 1);
+  EXPECT_EQ(weight(1), 1);
+  const auto force = [](const std::string& master, double lean) {
+    const auto s = run(leaning_block(master, lean), MonolithicAL{});
+    EXPECT_TRUE(is_converged(s.trajectory.status)) << s.trajectory.message;
+    return s.value("y");
+  };
+  const double sole = force("bottom", 0.4);  // (cosine .37)
+  EXPECT_GT(std::abs(force("boundary", 0.4) - sole), 1e-3 * std::abs(sole));
+  EXPECT_NEAR(force("boundary", 0.1), force("bottom", 0.1), 1e-9 * std::abs(sole));  // as far as equilibrium is solved
+  for (const Method& method : finite_schemes())
+    scenes::expect_derivatives_in_both_modes(leaning_block("boundary", 0.4), method);
 }
 
 // --- obstacles -------------------------------------------------------------------------------------------------------

@@ -109,6 +109,20 @@ TEST(NearestChange, IsNoneOfAPointThatNoParameterMoves) {
   expect_nearest(run.nearest("U0", 1), inf, inf, 0);
 }
 
+/// At small strain a point leaves the facet of a polyline that it faced at the start if a parameter moves an end of the
+/// facet below it.
+TEST(NearestChange, OfAPointOnAPolylineIsTheWayToTheEndsOfItsFacet) {
+  for (const auto& method : all_methods()) {
+    Scene s = scenes::stop(0, 1000, 0);
+    const Number left = scenes::parameter(s, "left", -0.25), right = scenes::parameter(s, "right", 0.75);
+    s.loads[0] = scenes::force("block.node", {0.0, -5.0});
+    s.obstacles = {{"stop", Polyline{{{-2.0, -0.3}, {left, 0.0}, {right, 0.0}, {2.0, -0.1}}}, {}}};
+    const Certified run(s, method);
+    expect_nearest(run.nearest("left"), inf, 0.25, 1e-12);  // a dozen operations
+    expect_nearest(run.nearest("right"), 0.75, inf, 1e-12);
+  }
+}
+
 struct Tally {
   int scenes = 0, unsolved = 0, tied = 0, compared = 0, wrong = 0, beside = 0;
 };

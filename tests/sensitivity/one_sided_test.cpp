@@ -224,6 +224,26 @@ TEST(OneSided, OfAPointOnAVertexThatRisesAreThoseOfEitherFacet) {
   }
 }
 
+TEST(OneSided, OfAPointWhereTheCurvatureJumpsAreThoseOfEitherPatch) {
+  // A Catmull-Rom curve that is level at the vertex below the point, straight before it, and bent by y'' = 0.3 behind.
+  // As the vertex moves on by h, the point is before it, where the curve is level; as it moves back, the point is
+  // behind it, on the slope 0.3 |h|. As above, k u_x' = -N s' and u_y' = s' u_x.
+  constexpr double k = 1000, along = 3, press = 5, bend = 0.3;
+  Scene s = stop(0, k, 0);
+  const Number moved = parameter(s, "moved", 0);
+  s.loads[0] = force("block.node", {along, -press});
+  s.obstacles = {{"stop", Polyline{{{-2.0, -0.3}, {-1.0, -0.05}, {moved, 0.0}, {1.0, -0.05}, {2.0, -0.6}}}, {}}};
+  s.contacts[0].smoothing = Smoothing::catmull_rom;
+  s.responses = {response("u", Response::Kind::displacement, "block.node", "x"),
+                 response("v", Response::Kind::displacement, "block.node", "y")};
+  for (const auto& method : exact_methods()) {
+    const auto found = sides(s, method);
+    ASSERT_TRUE(found.of) << name_of(method);
+    expect_sides(found.at("u", "moved"), bend * press / k, 0, press / k);
+    expect_sides(found.at("v", "moved"), -bend * along / k, 0, 1);
+  }
+}
+
 TEST(OneSided, OfMatchingNodesFaceTheFacetThatTheyMoveTo) {
   Scene s;
   s.legs = {{1, 1}};

@@ -312,6 +312,15 @@ TEST(Verify, HoldsAtTheCornersOfASlaveSide) {
   finite["strain"] = "finite";
   for (auto& [name, body] : finite["bodies"].items()) body["material"] = rubber();
   expect_holds(solve(finite, "monolithic_al"));
+  // the far side of the upper block is two blocks away from what it could face through the whole body beside it
+  finite["contacts"] = {{"far", {{"slave", "upper.left"}, {"master", "beside.boundary"}}},
+                        {"c", {{"slave", "upper.bottom"}, {"master", "lower.top"}, {"friction", 0.3}}},
+                        {"d", {{"slave", "beside.bottom"}, {"master", "lower.top"}, {"friction", 0.3}}}};
+  finite["responses"] = {{"N", {{"contact_force", {{"contact", "far"}, {"component", "normal"}}}}}};
+  const auto apart = solve(finite, "monolithic_al");
+  expect_holds(apart);
+  ASSERT_FALSE(apart.solution["increments"].empty());
+  EXPECT_EQ(apart.result["steps"].back()["responses"]["N"], 0);
 }
 
 /// What is at a right angle to a slave side does not face it, however the bodies are turned: rounding does not decide.
@@ -366,10 +375,53 @@ TEST(Verify, HoldsWhereNodesComeOntoASole) {
     SCOPED_TRACE(method);
     expect_holds(solve(scene, method));
   }
+  // a smaller one: where nodes far away would have their foot past a corner of its sole
+  scene["bodies"]["upper"] = block("[[0.5, 1], [1.77, 1], [1.77, 2], [0.5, 2]]", "[3, 2]", 0.5, 1.77, 3);
+  scene["supports"][1]["move"]["x"] = {{0, 0}, {1, 0.3}};
+  expect_holds(solve(scene, "monolithic_al"));
+}
+
+/// A block stands on a table of the plane, and its walls lean outwards: they look at the table, but only its sole faces
+/// it. So the whole boundary of the block is as good a master as its sole, also for nodes exactly below its corners.
+TEST(Verify, HoldsWhereTheWallsOfABlockLean) {
+  const auto block = [](const char* corners, const char* cells) {
+    return json{{"mesh", {{"quad", {{"corners", json::parse(corners)}, {"cells", json::parse(cells)}}}}}};
+  };
+  json scene = {{"bodies",
+                 {{"upper", block("[[1, 1], [3, 1], [3.13, 2], [0.87, 2]]", "[3, 2]")},
+                  {"lower", block("[[0, 0], [5, 0], [5, 1], [0, 1]]", "[20, 4]")}}},
+                {"contacts", {{"c", {{"slave", "lower.top"}, {"friction", 0.3}}}}},
+                {"supports",
+                 {{{"on", "lower.bottom"}, {"move", {{"x", 0}, {"y", 0}}}},
+                  {{"on", "upper.top"}, {"move", {{"x", 0}, {"y", -0.02}}}}}},
+                {"responses", {{"N", {{"contact_force", {{"contact", "c"}, {"component", "normal"}}}}}}},
+                {"time", {{"end", 1}, {"steps", 2}}}};
+  for (const char* strain : {"small", "finite"})
+    for (const char* surface : {"segments", "faceted", "smooth"})
+      for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) {
+        SCOPED_TRACE(std::string(strain) + " " + surface + " " + method);
+        scene["strain"] = strain;
+        for (auto& [name, body] : scene["bodies"].items())
+          body["material"] = strain == std::string("small") ? linear() : rubber();
+        json& contact = scene["contacts"]["c"];
+        contact["discretization"] = surface == std::string("segments") ? "segment" : "node";
+        contact.erase("surface");
+        if (surface != std::string("segments")) contact["surface"] = surface;
+        std::vector<double> forces;
+        for (const char* master : {"upper.bottom", "upper.boundary"}) {
+          contact["master"] = master;
+          const auto solved = solve(scene, method);
+          expect_holds(solved);
+          ASSERT_FALSE(solved.solution["increments"].empty());
+          forces.push_back(solved.result["steps"].back()["responses"]["N"].get<double>());
+        }
+        // (the springs of a penalty are as stiff as the two sides, of which the walls are a part)
+        EXPECT_NEAR(forces[1], forces[0], (method == std::string("penalty") ? 1e-3 : 1e-9) * forces[0]);
+      }
 }
 
 /// A block that is pressed onto a table: the walls of the block, which its press tilts, take no node from the sole. So
-/// the methods find the same contact.
+/// the methods find the same contact, also where nodes of the table are below the edges of the sole.
 TEST(Verify, HoldsWhereABlockStandsOnATable) {
   const auto block = [](const char* low, const char* high, const char* cells) {
     return json{
@@ -379,7 +431,7 @@ TEST(Verify, HoldsWhereABlockStandsOnATable) {
   json scene = {{"space", "solid"},
                 {"strain", "finite"},
                 {"bodies",
-                 {{"upper", block("[0.93, 0.93, 1]", "[3.07, 3.07, 2]", "[3, 3, 2]")},
+                 {{"upper", block("[1, 1, 1]", "[3, 3, 2]", "[3, 3, 2]")},
                   {"lower", block("[0, 0, 0]", "[4, 4, 1]", "[8, 8, 2]")}}},
                 {"contacts", {{"c", {{"slave", "lower.top"}, {"master", "upper.boundary"}, {"friction", 0.3}}}}},
                 {"supports",
@@ -387,11 +439,16 @@ TEST(Verify, HoldsWhereABlockStandsOnATable) {
                   {{"on", "upper.top"}, {"move", {{"x", 0}, {"y", 0}, {"z", -0.02}}}}}},
                 {"responses", {{"N", {{"contact_force", {{"contact", "c"}, {"component", "normal"}}}}}}},
                 {"time", {{"end", 1}, {"steps", 2}}}};
-  for (const char* element : {"T4", "H8"}) {
+  for (const auto& [element, edge] : {std::pair("T4", 0.93), {"H8", 0.93}, {"T4", 1.0}, {"H8", 1.0}}) {
     for (const char* body : {"upper", "lower"}) scene["bodies"][body]["element"] = element;
+    json& box = scene["bodies"]["upper"]["mesh"]["box"];
+    for (const int i : {0, 1}) {
+      box["min"][i] = edge;
+      box["max"][i] = 4 - edge;
+    }
     std::vector<double> forces;
     for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) {
-      SCOPED_TRACE(std::string(element) + " " + method);
+      SCOPED_TRACE(element + std::to_string(edge) + method);
       const auto solved = solve(scene, method);
       expect_holds(solved);
       ASSERT_FALSE(solved.solution["increments"].empty());

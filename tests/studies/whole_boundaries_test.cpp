@@ -54,6 +54,37 @@ TEST(WholeBoundaries, PressAsTheirFacesDo) {
         }
 }
 
+/// A ring in a ring, whose nodes lie on one another: a pair of `between` presses as the two sides named by hand do,
+/// with the bisector of two facets as normal, and so as symmetric as the scene.
+TEST(WholeBoundaries, OfAPairPressAsTheSidesThatTouch) {
+  const auto ring = [](double inner, double outer) {
+    return json{{"mesh", {{"ring", {{"center", {0, 0}}, {"inner", inner}, {"outer", outer}, {"cells", {2, 24}}}}}},
+                {"material", {{"linear_elastic", {{"E", 100}, {"nu", 0.3}}}}}};
+  };
+  json scene = {{"bodies", {{"low", ring(0.5, 1)}, {"up", ring(1, 1.5)}}},
+                {"contacts", {{"c", {{"slave", "up.inner"}, {"master", "low.outer"}, {"friction", 0.3}}}}},
+                {"supports",
+                 {{{"on", "low.inner"}, {"move", {{"x", 0}, {"y", 0}}}},
+                  {{"on", "up.outer"}, {"move", {{"x", 0}, {"y", -0.01}}}}}},
+                {"responses",
+                 {{"y", {{"reaction", {{"on", "up.outer"}, {"component", "y"}}}}},
+                  {"x", {{"reaction", {{"on", "up.outer"}, {"component", "x"}}}}}}},
+                {"time", {{"end", 1}, {"steps", 1}}}};
+  const auto reactions = [&](const json& of, const char* method) {
+    const auto result = cases::run(of, {{method, json::object()}}, "rings.json");
+    EXPECT_TRUE(is_converged(result.status())) << method << result.message();
+    return result.steps.back().responses;
+  };
+  json pair = scene;
+  pair["contacts"] = {{"c", {{"between", {"up", "low"}}, {"friction", 0.3}}}};
+  for (const char* method : {"penalty", "monolithic_al"}) {
+    const auto sides = reactions(scene, method), whole = reactions(pair, method);
+    for (const auto& of : {sides, whole})                                  // {x, y}
+      EXPECT_NEAR(of[0], 0, 1e-9 * std::abs(of[1])) << method;             // as it is solved
+    EXPECT_NEAR(whole[1], sides[1], 1e-3 * std::abs(sides[1])) << method;  // springs: of the size of a whole boundary
+  }
+}
+
 /// Each disc keeps E times its strain: 1000 times 0.01 over the area pi.
 TEST(WholeBoundaries, OfDiscsPressByTheirClosedForm) {
   json scene = blocks("axisymmetric", 0, "high.boundary", "low.boundary", "node");
