@@ -45,7 +45,7 @@ PseudoLoad pseudo_load(const Differentiation& problem, const State<double>& at, 
     Vector<Direction> balance = bulk_forces(model, block.slots, u, memory, &block.touched);
     if (block.stiffness) block.stiffness->add_forces(u, balance);
     balance = less_external_forces(model, block.slots, time, u, std::move(balance));
-    rows.push_back(into_frames(model, block.slots.frames, Layout::all, std::move(balance)));
+    rows.push_back(into_frames(model, block.slots.frames, NodalLayout::all, std::move(balance)));
     load.displacement.push_back(std::move(u));
   }
   load.rows = gather(

@@ -85,7 +85,7 @@ LinearisedEquilibrium::Rows LinearisedEquilibrium::evaluate(const std::vector<Ve
     const auto& slots = problem_.blocks[b].slots;
     rows.fields.push_back(evaluate_contact<Direction>(input(b), compact[b], lambda[b], &at_.contact.state));
     take_rays(input(b), lambda[b], at_.contact.ray, rows.fields[b]);
-    forces.push_back(into_frames(problem_.model, slots.frames, Layout::compact,
+    forces.push_back(into_frames(problem_.model, slots.frames, NodalLayout::compact,
                                  contact_forces(problem_.model, slots, rows.fields[b])));
     if (solves_for_multipliers())
       multiplier_rows.push_back(multiplier_residual(problem_.model, slots, rows.fields[b].traction, lambda[b]));

@@ -16,12 +16,12 @@
 
 namespace stickslip {
 
-/// rho of the method with its derivatives, per block. `factor`: adaption of rho per point; empty: none.
+/// rho of the method with its derivatives, per block. `rho_factor`: adaption of rho per point; empty: none.
 inline std::vector<RegularisationField<Direction>> regularisation_blocks(const Differentiation& problem,
-                                                                         const std::vector<double>& factor = {}) {
+                                                                         const std::vector<double>& rho_factor = {}) {
   std::vector<RegularisationField<Direction>> rho;
   for (const auto& block : problem.blocks)
-    rho.push_back(adapted(initial_regularisation(block.slots, problem.method), factor));
+    rho.push_back(adapted(initial_regularisation(block.slots, problem.method), rho_factor));
   return rho;
 }
 

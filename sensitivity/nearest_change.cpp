@@ -49,7 +49,9 @@ class ChangeReader {
   }
 
   void read_vertices() {
-    const auto read = [&](const Direction& way, double length) { read_way(way, length); };
+    const auto read = [&](const Direction& way, double length) {
+      read_way(way, length, std::abs(way.v) <= weak_margin);
+    };
     const auto for_each_way = model_.dimension == 3 ? for_each_edge_way : for_each_vertex_way;
     for_each_way(model_, of_.block.slots, of_.at.displacement, of_.state, of_.time, read);
   }
@@ -76,10 +78,13 @@ class ChangeReader {
     side = std::min(side, std::abs(way));
   }
 
-  /// A way to where another part of the master is faced, as a share of a length.
-  void read_way(const Direction& way, double length) {
-    lower(way, std::abs(way.v) <= weak_margin, scales_.negligible(scales_.of_mesh / length));
+  /// A way to where another part of the master is faced, as a share of a length; `tie`: it is none.
+  void read_way(const Direction& way, double length, bool tie) {
+    lower(way, tie, scales_.negligible(scales_.of_mesh / length));
   }
+
+  /// (A place may be past the end of its facet by rounding.)
+  void read_place(const Direction& way, double length) { read_way(way, length, way.v <= weak_margin); }
 
   /// On a facet the way is that to its ends. In a face the weight of a corner is zero where the node leaves the face.
   void read_place_of_start(int p) {
@@ -91,10 +96,10 @@ class ChangeReader {
       const auto c = place(point.corners[0]), x = place(point.nodes[0]);
       const Vec<Direction, 2> along = place(point.corners[1]) - c;
       const Direction length = norm(along), way = dot(Vec<Direction, 2>(x - c), along) / length;
-      for (const Direction& to : {way, Direction(length - way)}) read_way(to / value(length), value(length));
+      for (const Direction& to : {way, Direction(length - way)}) read_place(to / value(length), value(length));
     } else if (point.master == Master::faces && point.faces.size() == 1 && point.mesh_size > 0) {
       const auto& weights = slots.geometry[p].weights;
-      for (Eigen::Index k = point.slave_nodes; k < weights.size(); ++k) read_way(-weights[k], point.mesh_size);
+      for (Eigen::Index k = point.slave_nodes; k < weights.size(); ++k) read_place(-weights[k], point.mesh_size);
     }
   }
 

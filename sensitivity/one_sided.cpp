@@ -224,8 +224,8 @@ Margins margins(const Model& model, const Slots<double>& slots, const State<doub
 
 bool has_ties(const Model& model, const Slots<double>& slots, const Method& method, const State<double>& previous,
               const Increment<double>& increment, double largest) {
-  const auto has = [&](const State<double>& at, const std::vector<double>& factor) {
-    const auto rho = adapted(initial_regularisation(slots, method), factor);
+  const auto has = [&](const State<double>& at, const std::vector<double>& rho_factor) {
+    const auto rho = adapted(initial_regularisation(slots, method), rho_factor);
     return has_ties({model, slots, at, previous.history.bodies, rho, cone_radius_of(method), increment.time, largest});
   };
   if (!scheme_of(method).of_each_augmentation) return has(increment.state, increment.rho_factor);

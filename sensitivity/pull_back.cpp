@@ -65,7 +65,7 @@ void RecordedEquilibrium::record(const State<double>& previous, const Regularisa
   for_each_part([&](const Vector<double>& values, Vector<Reverse>& part) { part = leaves(values, tape); },
                 previous.history, history_);
   history_.patch = previous.history.patch;
-  history_.faces = previous.history.faces;
+  history_.faced = previous.history.faced;
   const ContactInput<Reverse> input{model, slots, rho, history_, cone, time, &at_.contact.facing};
   state_.displacement = displacement_;
   state_.multiplier = multiplier_;
@@ -82,7 +82,7 @@ void RecordedEquilibrium::record(const State<double>& previous, const Regularisa
     rows_ = internal - external_forces(model, slots, time, still);
     add_compact(model, contact_forces(model, slots, state_.contact), rows_);
   }
-  rows_ = into_frames(model, slots.frames, Layout::all, std::move(rows_));
+  rows_ = into_frames(model, slots.frames, NodalLayout::all, std::move(rows_));
   if (solves_for_multipliers())
     multiplier_rows_ = multiplier_residual(model, slots, state_.contact.traction, multiplier_);
   if (!objectives) return;
@@ -138,9 +138,9 @@ void RecordedEquilibrium::pull_back_memory(int objective) {
 /// Clears the derivative by the free displacements: a solve has taken it up.
 void RecordedEquilibrium::clear_free(int objective) {
   const auto& frames = problem_.slots.frames;
-  Vector<double> left = into_frames(problem_.model, frames, Layout::all, gather(objective, displacement_));
+  Vector<double> left = into_frames(problem_.model, frames, NodalLayout::all, gather(objective, displacement_));
   for (int dof : problem_.model.free_dofs) left[dof] = 0;
-  left = out_of_frames(problem_.model, frames, Layout::all, std::move(left));
+  left = out_of_frames(problem_.model, frames, NodalLayout::all, std::move(left));
   for (Eigen::Index i = 0; i < left.size(); ++i) adjoint(objective)[displacement_[i].entry] = left[i];
 }
 
@@ -153,7 +153,7 @@ void RecordedEquilibrium::clear_held(Matrix<double>& rows) {
 void RecordedEquilibrium::seed_contact(int objective, const BlockVector<double>& solution) {
   const Model& model = problem_.model;
   const int D = model.dimension;
-  const Vector<double> compact = into_frames(model, problem_.slots.frames, Layout::compact,
+  const Vector<double> compact = into_frames(model, problem_.slots.frames, NodalLayout::compact,
                                              problem_.engine.compact(Vector<double>(solution.u.col(0))));
   for (std::size_t n = 0; n < model.contact_nodes.size(); ++n)
     for (int i = 0; i < D; ++i)
@@ -174,7 +174,8 @@ void RecordedEquilibrium::balance(int objective) {
          bulk_tangent_times(model, problem_.slots, {at_.displacement, inside.last_memory, 0, &at_.flow}, weight));
   }
   const auto in_frames = [&] {
-    return Matrix<double>(into_frames(model, problem_.slots.frames, Layout::all, gather(objective, displacement_)));
+    return Matrix<double>(
+        into_frames(model, problem_.slots.frames, NodalLayout::all, gather(objective, displacement_)));
   };
   const auto of_multiplier = [&]() -> Matrix<double> {
     if (!solves_for_multipliers()) return Matrix<double>::Zero(model.multiplier_count, 1);

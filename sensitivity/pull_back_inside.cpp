@@ -17,10 +17,10 @@ Matrix<double> weights_inside(AdjointProblem& problem, const std::vector<Interio
   };
   Matrix<double> all = problem.engine.expand(join(&InteriorShare::u), -join(&InteriorShare::others));
   for (Eigen::Index n = 0; n < count; ++n) {
-    Vector<double> a = into_frames(model, problem.slots.frames, Layout::all, Vector<double>(all.col(n)));
+    Vector<double> a = into_frames(model, problem.slots.frames, NodalLayout::all, Vector<double>(all.col(n)));
     for (Eigen::Index dof = 0; dof < a.size(); ++dof)
       if (model.free_index[dof] < 0) a[dof] = 0;
-    all.col(n) = out_of_frames(model, problem.slots.frames, Layout::all, std::move(a));
+    all.col(n) = out_of_frames(model, problem.slots.frames, NodalLayout::all, std::move(a));
   }
   return all;
 }
@@ -79,8 +79,8 @@ void pull_back_loads(AdjointProblem& problem, const InteriorShare& of, const Vec
     for (Eigen::Index i = 0; i < rows.size(); ++i)
       if (rows[i].entry >= 0) by[rows[i].entry] += weights[i];
   };
-  const Vector<double> in_frames = inside_alone(model, into_frames(model, frames, Layout::all, a));
-  const Vector<double> weights = out_of_frames(model, frames, Layout::all, Vector<double>(in_frames));
+  const Vector<double> in_frames = inside_alone(model, into_frames(model, frames, NodalLayout::all, a));
+  const Vector<double> weights = out_of_frames(model, frames, NodalLayout::all, Vector<double>(in_frames));
   pull_back_dead_forces(model, slots, of.time, weights, by, tape);
   if (!model.followers.empty()) {
     const Vector<Reverse> still = of.motion.unaryExpr(constant);
@@ -88,17 +88,17 @@ void pull_back_loads(AdjointProblem& problem, const InteriorShare& of, const Vec
   }
   if (!model.framed.empty()) {
     const Vector<double> forces = of.forces - external_forces(model, problem.slots, of.time, of.motion);
-    seed(into_frames(model, slots.frames, Layout::all, Vector<Reverse>(forces.unaryExpr(constant))), in_frames);
+    seed(into_frames(model, slots.frames, NodalLayout::all, Vector<Reverse>(forces.unaryExpr(constant))), in_frames);
   }
   if (moves_on_tape(model, slots, of.time)) {
     Vector<Reverse> prescribed = of.motion.unaryExpr(constant);
     prescribe(model, slots, of.time, prescribed);
     Vector<double> held =
-        into_frames(model, frames, Layout::all,
+        into_frames(model, frames, NodalLayout::all,
                     tangent_times(model, problem.slots, {of.motion, of.last_memory, of.time, &of.flow}, a,
                                   Taken::transposed, &problem.at_supports));
     for (int dof : model.free_dofs) held[dof] = 0;
-    seed(prescribed, out_of_frames(model, frames, Layout::all, std::move(held)));
+    seed(prescribed, out_of_frames(model, frames, NodalLayout::all, std::move(held)));
   }
   by.resize(tape.size(), 0);
   tape.pull_back(by, problem.slots_end);

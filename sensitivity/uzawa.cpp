@@ -90,14 +90,14 @@ struct SchemeEquilibrium {
   const UzawaAL& method;
   const State<double>& of_loop;
   double oversize;                                       ///< kappa_s
-  std::vector<double> factor;                            ///< on the initial rho, if the scheme depends on that
+  std::vector<double> rho_factor;                        ///< on the initial rho, if the scheme depends on that
   RegularisationField<double> rho;                       ///< kappa_s times that of the loop
   std::optional<State<double>> restated = std::nullopt;  ///< for the preconditioned scheme
 
   const State<double>& state() const { return restated ? *restated : of_loop; }
 
   LinearisedEquilibrium linearise(Differentiation& problem, const State<double>& previous, double time) const {
-    auto blocks = method.scheme().reads_regularisation ? regularisation_blocks(problem, factor)
+    auto blocks = method.scheme().reads_regularisation ? regularisation_blocks(problem, rho_factor)
                                                        : std::vector(problem.blocks.size(), constant<Direction>(rho));
     return LinearisedEquilibrium(problem, state(), rho, std::move(blocks), method.cone_radius(), time,
                                  method.multipliers, previous.history);
@@ -107,7 +107,7 @@ struct SchemeEquilibrium {
                              bool objectives) const {
     problem.tape.rewind(problem.slots_end);
     const auto recorded = method.scheme().reads_regularisation
-                              ? adapted(initial_regularisation(problem.recorded, method), factor)
+                              ? adapted(initial_regularisation(problem.recorded, method), rho_factor)
                               : constant<Reverse>(rho);
     return RecordedEquilibrium(problem, previous, state(), recorded, method.cone_radius(), time, method.multipliers,
                                objectives);
@@ -116,10 +116,10 @@ struct SchemeEquilibrium {
 
 /// With rho of the loop times `oversize`.
 SchemeEquilibrium scheme_equilibrium(const UzawaAL& method, const Slots<double>& slots, const State<double>& at,
-                                     std::vector<double> factor, double oversize) {
-  for (double& f : factor) f *= oversize;
-  auto rho = adapted(initial_regularisation(slots, method), factor);
-  return {method, at, oversize, std::move(factor), std::move(rho)};
+                                     std::vector<double> rho_factor, double oversize) {
+  for (double& f : rho_factor) f *= oversize;
+  auto rho = adapted(initial_regularisation(slots, method), rho_factor);
+  return {method, at, oversize, std::move(rho_factor), std::move(rho)};
 }
 
 /// That of all schemes but the truncated one.

@@ -13,6 +13,7 @@ namespace stickslip {
 struct Circle {
   static constexpr bool is_in_plane = true, is_in_space = false, is_flat = false;
   static constexpr const char *key = "circle", *about = "a drum, or a cup; not in space";
+  static constexpr const char* if_turned = R"(look at "inside" of the circle: true is a cup, solid outside)";
   std::array<Number, 2> center;
   Number radius;
   bool inside = false;

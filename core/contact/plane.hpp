@@ -13,6 +13,7 @@ namespace stickslip {
 struct Plane {
   static constexpr bool is_in_plane = true, is_in_space = true, is_flat = true;
   static constexpr const char *key = "plane", *about = "a half space";
+  static constexpr const char* if_turned = "turn the normal of the plane round: it points out of the solid";
   std::vector<Number> point, normal;
 
   static constexpr auto keys() {

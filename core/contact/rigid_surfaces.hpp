@@ -1,7 +1,8 @@
 /// The list of rigid surfaces. Each has a file of its own, with
 ///
 ///   its description    for the scene: its keys (core/algebra/described.hpp); whether it is made for the plane and for
-///                      space (is_in_plane, is_in_space); whether it is flat (is_flat)
+///                      space (is_in_plane, is_in_space); whether it is flat (is_flat); of one of the plane what to do
+///                      if its solid is on the wrong side (if_turned)
 ///   against()          of (X, w, surface, numbers): the geometry of the place X + w. Its gap is that of X and what the
 ///                      displacement w adds, so that a small displacement keeps its digits far from the origin
 ///   ambiguous_at()     only if it has a place from which no part of it is nearer than another
@@ -11,6 +12,7 @@
 #pragma once
 
 #include <concepts>
+#include <string>
 #include <variant>
 
 #include "core/contact/circle.hpp"
@@ -23,6 +25,7 @@ namespace stickslip {
 /// Rigid curve from point to point, the solid on its right. `closed`: the last point is the first again.
 struct Polyline {
   static constexpr bool is_in_plane = true, is_in_space = false, is_flat = false;
+  static constexpr const char* if_turned = "turn the points of the polyline round: its solid is on their right";
   std::vector<std::array<Number, 2>> points;  ///< without the repeated one
   bool closed = false;
 };
@@ -44,6 +47,16 @@ inline bool is_in_space(const RigidSurface& surface) {
 }
 inline bool is_flat(const RigidSurface& surface) {
   return std::visit([](const auto& shape) { return shape.is_flat; }, surface);
+}
+
+/// What to do if the solid of a surface is on the wrong side. pre: it is one of the plane.
+inline std::string if_turned(const RigidSurface& surface) {
+  return std::visit(
+      []<class S>(const S&) -> std::string {
+        if constexpr (S::is_in_plane) return S::if_turned;
+        return {};
+      },
+      surface);
 }
 
 /// Geometry of the place X + w against a surface. pre: it is no polyline.

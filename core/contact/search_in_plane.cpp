@@ -164,10 +164,19 @@ Facing PatchSearch<2>::nearest_facing(const Query& query) const {
   return ends ? past_end(foot, query) : foot;
 }
 
-/// The gap in lengths of the patch.
-double PatchSearch<2>::share_outside(const Facing& foot, const Vec<double, 2>& x) const {
-  const double gap = foot_on_patch<double>(patches_[foot.patch], foot.at, x, position_in(positions_)).gap;
-  return gap / (vertex(foot.patch, 1) - vertex(foot.patch, 0)).norm();
+double PatchSearch<2>::gap(const Facing& foot, const Vec<double, 2>& x) const {
+  return foot_on_patch<double>(patches_[foot.patch], foot.at, x, position_in(positions_)).gap;
+}
+
+/// Whether x is outside of the facet that it is nearest to; past a free end it is not. Beyond a centre of curvature a
+/// patch has no foot.
+bool PatchSearch<2>::is_outside_of_facets(const Vec<double, 2>& x) const {
+  const Nearest near = nearest_facet({x, Vec<double, 2>::Zero()});
+  if (near.patch == no_patch) return false;
+  const auto& across = patches_[near.patch].across;
+  if ((near.xi < 0 && across[0] == no_patch) || (near.xi > 1 && across[1] == no_patch)) return false;
+  const Vec<double, 2> off = x - vertex(near.patch, 0), tau = vertex(near.patch, 1) - vertex(near.patch, 0);
+  return off[0] * tau[1] > off[1] * tau[0];
 }
 
 /// Normal of a patch at a foot, of any length.

@@ -86,12 +86,6 @@ double PatchSearch<3>::gap(const Facing& at, const Vec<double, 3>& x) const {
   return -y.col(0).dot(cross<double>(y.col(1), y.col(2)).normalized());
 }
 
-/// The gap in lengths of the first edge of the patch.
-double PatchSearch<3>::share_outside(const Facing& at, const Vec<double, 3>& x) const {
-  const auto& corners = patches_[at.patch].vertices;
-  return gap(at, x) / (positions_.col(corners[1]) - positions_.col(corners[0])).norm();
-}
-
 /// Whether x is outside of a facet that it is nearest to. Far past its edges a patch has no foot.
 bool PatchSearch<3>::is_outside_of_facets(const Vec<double, 3>& x) const {
   const auto near = faces_.nearest(x, [](int) { return true; });

@@ -5,6 +5,8 @@
 /// where a surface ends, differs between the dimensions.
 #pragma once
 
+#include <cmath>
+
 #include "core/contact/box_tree.hpp"
 #include "core/contact/face_search.hpp"
 #include "core/contact/own_vertex.hpp"
@@ -17,6 +19,8 @@ namespace stickslip {
 /// penalty, or the first augmentation, moves the last node off its master and back for ever. In space the normal at a
 /// border is that of one side, so a node in a plane of symmetry, where a body is cut, projects a little past it.
 inline constexpr double past_end_of_surface = 0.01;
+/// Share of a patch by which what is past its end, outside of a wall, is inside by it at most.
+inline constexpr double deepest_past_end = 0.25;
 
 template <int D>
 class PatchSearch;
@@ -53,8 +57,9 @@ class PatchSearch<2> {
   };
   Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing from, const Vec<double, 2>& x, int hops) const;
-  double share_outside(const Facing& foot, const Vec<double, 2>& x) const;
-  bool is_outside_of_facets(const Vec<double, 2>&) const { return false; }  // (past a free end, or far inside)
+  double gap(const Facing& foot, const Vec<double, 2>& x) const;
+  double size(int patch) const { return (vertex(patch, 1) - vertex(patch, 0)).norm(); }  ///< length
+  bool is_outside_of_facets(const Vec<double, 2>& x) const;
   Vec<double, 2> normal(const Facing& foot) const;
   Facing settled(const Facing& foot, const Query& query) const;
   Facing facing_nothing(const Vec<double, 2>& x) const;
@@ -96,7 +101,8 @@ class PatchSearch<3> {
   };
   Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing at, const Vec<double, 3>& x, int hops) const;
-  double share_outside(const Facing& at, const Vec<double, 3>& x) const;
+  double gap(const Facing& at, const Vec<double, 3>& x) const;
+  double size(int patch) const { return std::sqrt(across(patch).norm()); }  ///< length
   bool is_outside_of_facets(const Vec<double, 3>& x) const;
   Vec<double, 3> normal(const Facing& at) const;
   Facing facing_nothing(const Vec<double, 3>& x) const;
@@ -110,7 +116,6 @@ class PatchSearch<3> {
   bool is_eligible(int patch, const Query& query) const;
   bool is_past_end(const Facing& at, const Query& query) const;
   Facing beyond_edges(const Facing& at, const Query& query) const;
-  double gap(const Facing& at, const Vec<double, 3>& x) const;
   Facing larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const;
   Eigen::Matrix3Xd arms(int patch, const Vec<double, 3>& x) const;
 
@@ -142,18 +147,20 @@ class SurfaceSearch : public PatchSearch<D> {
   ///   comes_on  it faced nothing in the last increment
   ///
   /// If the nearest of all patches has x outside of the solid, x is not inside of it by a farther patch. But outside of
-  /// the wall of a block by no more than what is still faced past the end of its sole, x is inside by the sole; unless
-  /// it comes on, as what a block that slides has before it.
+  /// the wall of a block by no more than what is still faced past the end of its sole, x is inside by the sole. This
+  /// does not hold for what comes on, as what a block that slides has before it, nor far inside, as beside a wall.
   Facing facing(const Vec<double, D>& x, const Vec<double, D>& outward, bool comes_on = false) const {
     const Vec<double, D> any = Vec<double, D>::Zero();
     Facing found = this->nearest_facing({x, outward});
-    if (found.patch != no_patch && outward != any && this->share_outside(found, x) < -mesh_file_rounding) {
+    const double size = found.patch != no_patch ? this->size(found.patch) : 0;
+    if (found.patch != no_patch && outward != any && this->gap(found, x) < -mesh_file_rounding * size) {
       const Facing nearest = this->nearest_facing({x, any});
-      const bool is_wall =
-          !comes_on && nearest.patch != no_patch && !opposes<D>(this->normal(nearest), this->normal(found));
+      const bool may_be_past = !comes_on && this->gap(found, x) > -deepest_past_end * size;
+      const bool is_beside =
+          may_be_past && nearest.patch != no_patch && !opposes<D>(this->normal(nearest), this->normal(found));
       const bool is_outside = nearest.patch == no_patch
                                   ? this->is_outside_of_facets(x)
-                                  : this->share_outside(nearest, x) >= (is_wall ? past_end_of_surface : 0);
+                                  : this->gap(nearest, x) >= (is_beside ? past_end_of_surface * size : 0);
       if (is_outside) found = {};
     }
     if constexpr (D == 2) found = this->settled(found, {x, outward});

@@ -29,10 +29,10 @@ class CondensedBodies {
     for (const auto& constraint : model_.constraints) rest_[constraint.dof] = u[constraint.dof];
     for (int node : model_.contact_nodes)
       for (int i = 0; i < model_.dimension; ++i) rest_[node * model_.dimension + i] = T(0);
-    const Vector<T> moved = out_of_frames(model_, slots_.frames, Layout::all, rest_);
+    const Vector<T> moved = out_of_frames(model_, slots_.frames, NodalLayout::all, rest_);
     const auto* only = own_.empty() ? nullptr : &own_;
     auto reduced = condensation_->reduce(into_frames(
-        model_, slots_.frames, Layout::all, Vector<T>(external - bulk_forces(model_, slots_, moved, {}, only))));
+        model_, slots_.frames, NodalLayout::all, Vector<T>(external - bulk_forces(model_, slots_, moved, {}, only))));
     load_ = reduced.kept;
     others_ = std::move(reduced.others);
     take_own(external);
@@ -56,10 +56,10 @@ class CondensedBodies {
   /// What is prescribed outside the contact, all dofs; zero elsewhere.
   const Vector<T>& rest() const { return rest_; }
 
-  void add_holdings(EngineHoldings& held) const {
-    held.condensed = static_cast<long>(schur().size() * sizeof(T));
-    held.bodies_factor = condensation_->factor_bytes();
-    held.body_solves = condensation_->backsolves();
+  void add_to_report(EngineReport& report) const {
+    report.condensed = static_cast<long>(schur().size() * sizeof(T));
+    report.bodies_factor = condensation_->factor_bytes();
+    report.body_solves = condensation_->backsolves();
   }
 
  private:
@@ -107,13 +107,14 @@ class AllBodiesCondensed : public Elimination<T> {
   }
 
   Vector<T> compact(const Vector<T>& u) const override {
-    return out_of_frames(model_, slots_.frames, Layout::compact, u);
+    return out_of_frames(model_, slots_.frames, NodalLayout::compact, u);
   }
   Vector<T> all(const Vector<T>& u) const override {
-    return out_of_frames(model_, slots_.frames, Layout::all, Vector<T>(condensed_.rest() + condensed_.all(u).col(0)));
+    return out_of_frames(model_, slots_.frames, NodalLayout::all,
+                         Vector<T>(condensed_.rest() + condensed_.all(u).col(0)));
   }
   Matrix<T> spread(const Matrix<T>& u) const override {
-    const Matrix<T> compact = out_of_frames(model_, slots_.frames, Layout::compact, u);
+    const Matrix<T> compact = out_of_frames(model_, slots_.frames, NodalLayout::compact, u);
     Matrix<T> all = Matrix<T>::Constant(model_.dof_count(), u.cols(), T(0));
     detail::put_rows(compact, condensed_.condensation().contact(), all);
     return all;
@@ -122,7 +123,7 @@ class AllBodiesCondensed : public Elimination<T> {
   Matrix<T> scatter(const Matrix<T>& compact) const override { return compact; }
   Reduction<T> reduce(const Matrix<T>& rows) const override { return condensed_.condensation().reduce(rows); }
   Matrix<T> expand(const Matrix<T>& u, Matrix<T> others, const std::vector<int>* wanted) const override {
-    return out_of_frames(model_, slots_.frames, Layout::all,
+    return out_of_frames(model_, slots_.frames, NodalLayout::all,
                          condensed_.condensation().expand(u, std::move(others), wanted));
   }
   void add_contact(const Vector<T>& forces, Vector<T>& rows) const override { rows += forces; }
@@ -136,14 +137,14 @@ class AllBodiesCondensed : public Elimination<T> {
   }
   Vector<T> tangent_times(const BodyMotion<T>& /*at*/, const Vector<T>& motion) const override {
     return spread(Vector<T>(condensed_.schur() *
-                            into_frames(model_, slots_.frames, Layout::compact, to_compact(model_, motion))));
+                            into_frames(model_, slots_.frames, NodalLayout::compact, to_compact(model_, motion))));
   }
 
   std::string name() const override {
     const std::string by = condensed_.condensation().name();  // empty where no body has an inside
     return by.empty() ? "" : " on " + by;
   }
-  void add_holdings(EngineHoldings& held) const override { condensed_.add_holdings(held); }
+  void add_to_report(EngineReport& report) const override { condensed_.add_to_report(report); }
 
  private:
   using Elimination<T>::model_, Elimination<T>::slots_;
@@ -153,8 +154,8 @@ class AllBodiesCondensed : public Elimination<T> {
     if (rate_.kept.size() == 0) {
       const double end = model_.times.back();
       const Vector<T> change = dead_forces(model_, slots_, end) - dead_forces(model_, slots_, 0);
-      rate_ =
-          condensed_.condensation().reduce(into_frames(model_, slots_.frames, Layout::all, Vector<T>(change / T(end))));
+      rate_ = condensed_.condensation().reduce(
+          into_frames(model_, slots_.frames, NodalLayout::all, Vector<T>(change / T(end))));
     }
     return rate_;
   }

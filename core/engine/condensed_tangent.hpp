@@ -74,7 +74,7 @@ class CondensedTangent : public TangentSystem<T> {
     return static_cast<int>(matrix_.dofs.size()) + (kind_.has_unknown_multipliers() ? model_.multiplier_count : 0);
   }
   long nonzeros() const override { return matrix_.pattern->nonzeros(); }
-  void add_holdings(EngineHoldings& held) const override;
+  void add_to_report(EngineReport& report) const override;
 
  private:
   bool condense(Counters& counters);
@@ -210,14 +210,14 @@ std::string CondensedTangent<T>::name() const {
 }
 
 template <class T>
-void CondensedTangent<T>::add_holdings(EngineHoldings& held) const {
-  dense_.add_holdings(held);
-  held.bodies = static_cast<long>(matrix_.values.size() * sizeof(T));
-  held.condensed = static_cast<long>(schur_.size() * sizeof(T)) + untouched_.bytes();
-  held.matrix += matrix_.pattern->bytes();
-  held.matrix_entries = static_cast<long>(matrix_.pattern->nonzeros());
-  held.factor += factor_.solver.factor_bytes();
-  held.factor_entries = factor_.solver.factor_nonzeros();
+void CondensedTangent<T>::add_to_report(EngineReport& report) const {
+  dense_.add_to_report(report);
+  report.bodies = static_cast<long>(matrix_.values.size() * sizeof(T));
+  report.condensed = static_cast<long>(schur_.size() * sizeof(T)) + untouched_.bytes();
+  report.matrix += matrix_.pattern->bytes();
+  report.matrix_entries = static_cast<long>(matrix_.pattern->nonzeros());
+  report.factor += factor_.solver.factor_bytes();
+  report.factor_entries = factor_.solver.factor_nonzeros();
 }
 
 extern template class CondensedTangent<double>;

@@ -4,7 +4,7 @@
 ///   [ C_lu      C_ll ]      S: the bodies on their contact dofs (engine/condensation.hpp); C: of the points
 ///
 /// Rows of the multipliers of open points hold nothing but these, and are left out of the factor. Vectors u are over
-/// the contact dofs (Layout::compact), l over the multipliers.
+/// the contact dofs (NodalLayout::compact), l over the multipliers.
 #pragma once
 
 #include "core/algebra/dense_factor.hpp"
@@ -49,11 +49,11 @@ class DenseSystem : public PointSystem<T> {
   std::string factor_name() const { return kind_.symmetry == Symmetry::positive_definite ? "LL^T" : "LU"; }
   std::string name() const override { return "condensed, dense " + factor_name(); }
   long nonzeros() const override { return static_cast<long>(this->unknowns()) * this->unknowns(); }
-  void add_holdings(EngineHoldings& held) const override {
-    held.matrix_entries = held.factor_entries = static_cast<long>(matrix_.size());
-    held.matrix = static_cast<long>(matrix_.size() * sizeof(T));
-    held.factor = factor_.bytes();
-    held.unsymmetric = kind_.symmetry == Symmetry::general;
+  void add_to_report(EngineReport& report) const override {
+    report.matrix_entries = report.factor_entries = static_cast<long>(matrix_.size());
+    report.matrix = static_cast<long>(matrix_.size() * sizeof(T));
+    report.factor = factor_.bytes();
+    report.unsymmetric = kind_.symmetry == Symmetry::general;
   }
 
  private:

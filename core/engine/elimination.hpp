@@ -81,19 +81,19 @@ class Elimination {
 
   // ---- forces and tangents
 
-  /// f_int - f_ext. `system`: has the tangent of bodies that are held. Raises scale.force.
+  /// f_int - f_ext. `system`: has the tangent of bodies whose linearisation is fixed. Raises scale.force.
   virtual Vector<T> residual(const Vector<T>& u, const TangentSystem<T>& system, ForceScale& scale) const = 0;
   /// The motion that the tangent of bodies that change is taken at from now on.
   virtual void linearise(const BodyMotion<T>& /*at*/) {}
-  /// As Engine::hold_bodies, about the motion at which they are linearised, or another.
-  virtual void hold(const BodyMotion<T>& /*at*/, const Vector<T>& /*u*/) {}
+  /// As Engine::fix_linearisation, about the motion at which they are linearised, or another.
+  virtual void fix(const BodyMotion<T>& /*at*/, const Vector<T>& /*u*/) {}
   virtual void release() {}
   /// As that of Engine.
   virtual Vector<T> tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const = 0;
 
   /// What it adds to the engine's name.
   virtual std::string name() const { return {}; }
-  virtual void add_holdings(EngineHoldings& /*held*/) const {}
+  virtual void add_to_report(EngineReport& /*report*/) const {}
 
  protected:
   const Model& model_;

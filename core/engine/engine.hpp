@@ -25,7 +25,7 @@ template <class T>
 class Condensation;  // core/engine/condensation.hpp
 
 /// Tangent of bodies that are taken for linear: that at the motion, or the last one, however far from there.
-enum class HeldTangent { at_motion, last };
+enum class FixedTangent { at_motion, last };
 
 template <class T>
 class Engine {
@@ -74,10 +74,10 @@ class Engine {
   Vector<T> residual(const Vector<T>& u, const Vector<T>& contact, ForceScale& scale) const;
   /// Takes the bodies' tangent at a motion, for all that follows; nothing where it does not depend on that.
   void linearise(const BodyMotion<T>& at);
-  /// Takes the bodies for linear, in residuals too, until release_bodies(): as linearise(at), with the forces at that
-  /// motion. `u`: engine displacement that has the prescribed values. (Where their tangent is constant they are so.)
-  void hold_bodies(const BodyMotion<T>& at, const Vector<T>& u, HeldTangent tangent = HeldTangent::at_motion);
-  void release_bodies() { bodies_->release(); }
+  /// Takes the bodies for linear, in residuals too, until release_linearisation(): as linearise(at), with the forces at
+  /// that motion. `u`: engine displacement that has the prescribed values. (Bodies whose tangent is constant are so.)
+  void fix_linearisation(const BodyMotion<T>& at, const Vector<T>& u, FixedTangent tangent = FixedTangent::at_motion);
+  void release_linearisation() { bodies_->release(); }
   /// Whether the last tangent that was condensed is nearly that at a motion: nodes have moved by a ten-thousandth of
   /// the smallest facet since. Never for bodies with a memory, nor under loads that follow them.
   bool has_tangent_near(const BodyMotion<T>& at) const;
@@ -91,7 +91,7 @@ class Engine {
 
   // ---- systems
 
-  /// Whether points that change while bodies are held cost no sparse factor.
+  /// Whether points that change while the linearisation is fixed cost no sparse factor.
   bool condenses_tangents() const { return system().condenses_tangents(); }
   /// Whether a factorisation costs as much as many solves.
   bool has_costly_factors() const { return system().has_costly_factors(); }
@@ -122,7 +122,7 @@ class Engine {
   const std::string& message() const { return system().message(); }  ///< why the last factorisation failed
   int unknowns() const { return system().unknowns(); }
   long nonzeros() const { return system().nonzeros(); }
-  EngineHoldings holdings() const;
+  EngineReport report() const;
   EngineMemory<T> memory() const { return system().memory(); }
   /// Goes back to it, by a factorisation where it had a factor: later solves have the same bits as they had then.
   void restore(const EngineMemory<T>& memory, Counters& counters);

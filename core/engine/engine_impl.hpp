@@ -21,7 +21,7 @@ Vector<T> Engine<T>::begin(double time, const Vector<T>& displacement, const Vec
   let_solve(0);
   Vector<T> u = displacement;
   prescribe(model_, slots_, time, u);
-  return bodies_->begin(time, into_frames(model_, slots_.frames, Layout::all, std::move(u)), before);
+  return bodies_->begin(time, into_frames(model_, slots_.frames, NodalLayout::all, std::move(u)), before);
 }
 
 template <class T>
@@ -30,7 +30,7 @@ Vector<T> Engine<T>::residual(const Vector<T>& u, const Vector<T>& contact, Forc
   Vector<T> rows = bodies_->residual(u, system(), scale);
   scale.force = std::max(scale.force, largest_nodal_norm(contact, D));
   scale.rounding = unit_roundoff * stiffness_ * largest_nodal_norm(u, D);
-  bodies_->add_contact(into_frames(model_, slots_.frames, Layout::compact, contact), rows);
+  bodies_->add_contact(into_frames(model_, slots_.frames, NodalLayout::compact, contact), rows);
   return rows;
 }
 
@@ -42,10 +42,10 @@ void Engine<T>::linearise(const BodyMotion<T>& at) {
 }
 
 template <class T>
-void Engine<T>::hold_bodies(const BodyMotion<T>& at, const Vector<T>& u, HeldTangent tangent) {
+void Engine<T>::fix_linearisation(const BodyMotion<T>& at, const Vector<T>& u, FixedTangent tangent) {
   if (model_.effects.linear_bulk) return;
-  if (tangent == HeldTangent::at_motion) linearise(at);
-  bodies_->hold(at, u);
+  if (tangent == FixedTangent::at_motion) linearise(at);
+  bodies_->fix(at, u);
 }
 
 template <class T>
@@ -67,11 +67,11 @@ bool Engine<T>::factorise(const std::vector<PointTangent<T>>& tangents, Counters
 }
 
 template <class T>
-EngineHoldings Engine<T>::holdings() const {
-  EngineHoldings held;
-  system().add_holdings(held);
-  bodies_->add_holdings(held);
-  return held;
+EngineReport Engine<T>::report() const {
+  EngineReport report;
+  system().add_to_report(report);
+  bodies_->add_to_report(report);
+  return report;
 }
 
 template <class T>

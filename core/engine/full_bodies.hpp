@@ -37,7 +37,7 @@ class FullBodies : public Elimination<T> {
   Vector<T> increment(const Vector<T>& u, double /*time*/) override { return all(u); }
 
   Vector<T> compact(const Vector<T>& u) const override {
-    return out_of_frames(model_, slots_.frames, Layout::compact, to_compact(model_, u));
+    return out_of_frames(model_, slots_.frames, NodalLayout::compact, to_compact(model_, u));
   }
   Vector<T> all(const Vector<T>& u) const override { return in_axes(u); }
   Matrix<T> spread(const Matrix<T>& u) const override { return in_axes(u); }
@@ -51,8 +51,8 @@ class FullBodies : public Elimination<T> {
 
   Vector<T> residual(const Vector<T>& u, const TangentSystem<T>& system, ForceScale& scale) const override;
   void linearise(const BodyMotion<T>& at) override;
-  void hold(const BodyMotion<T>& at, const Vector<T>& u) override;
-  void release() override { held_.reset(); }
+  void fix(const BodyMotion<T>& at, const Vector<T>& u) override;
+  void release() override { fixed_.reset(); }
   Vector<T> tangent_times(const BodyMotion<T>& at, const Vector<T>& motion) const override {
     return stickslip::tangent_times(model_, slots_, at, motion, Taken::as_is);
   }
@@ -85,11 +85,11 @@ class FullBodies : public Elimination<T> {
   std::vector<T> tangent_of(const BodyMatrix<T>& matrix, BodyKind kind) const;
   template <class V>
   V in_frames(V v) const {
-    return into_frames(model_, slots_.frames, Layout::all, std::move(v));
+    return into_frames(model_, slots_.frames, NodalLayout::all, std::move(v));
   }
   template <class V>
   V in_axes(V v) const {
-    return out_of_frames(model_, slots_.frames, Layout::all, std::move(v));
+    return out_of_frames(model_, slots_.frames, NodalLayout::all, std::move(v));
   }
 
  private:
@@ -105,10 +105,10 @@ class FullBodies : public Elimination<T> {
   std::optional<Linearised> at_;
   /// Bodies that are linear for a while: their forces, less the loads that follow them, at a displacement of the free
   /// dofs.
-  struct Held {
+  struct Fixed {
     Vector<T> u, rows;
   };
-  std::optional<Held> held_;
+  std::optional<Fixed> fixed_;
 };
 
 template <class T>
@@ -124,11 +124,11 @@ template <class T>
 Vector<T> FullBodies<T>::residual(const Vector<T>& u, const TangentSystem<T>& system, ForceScale& scale) const {
   const int D = model_.dimension;
   const Vector<T> moved = spread(u);
-  Vector<T> rows = held_ ? Vector<T>(held_->rows + system.times(u - held_->u, Taken::as_is).col(0)) : forces(moved);
+  Vector<T> rows = fixed_ ? Vector<T>(fixed_->rows + system.times(u - fixed_->u, Taken::as_is).col(0)) : forces(moved);
   scale.force =
       std::max({scale.force, largest_nodal_norm(rows, D), largest_nodal_norm(external_, D), condensed_force()});
   rows -= external_;
-  if (!model_.followers.empty() && !held_) {
+  if (!model_.followers.empty() && !fixed_) {
     const Vector<T> follower = in_frames(follower_forces(model_, slots_, time_, moved));
     scale.force = std::max(scale.force, largest_nodal_norm(follower, D));
     rows -= follower;
@@ -149,13 +149,13 @@ void FullBodies<T>::linearise(const BodyMotion<T>& at) {
 }
 
 template <class T>
-void FullBodies<T>::hold(const BodyMotion<T>& at, const Vector<T>& u) {
-  Held held{in_frames(at.displacement), forces(at.displacement)};
-  if (!model_.followers.empty()) held.rows -= in_frames(follower_forces(model_, slots_, time_, at.displacement));
-  Vector<T> prescribed = u - held.u;
+void FullBodies<T>::fix(const BodyMotion<T>& at, const Vector<T>& u) {
+  Fixed fixed{in_frames(at.displacement), forces(at.displacement)};
+  if (!model_.followers.empty()) fixed.rows -= in_frames(follower_forces(model_, slots_, time_, at.displacement));
+  Vector<T> prescribed = u - fixed.u;
   for (int dof : model_.free_dofs) prescribed[dof] = T(0);
-  if (values(prescribed).cwiseAbs().maxCoeff() > 0) held.rows += in_frames(tangent_times(at, spread(prescribed)));
-  held_ = std::move(held);
+  if (values(prescribed).cwiseAbs().maxCoeff() > 0) fixed.rows += in_frames(tangent_times(at, spread(prescribed)));
+  fixed_ = std::move(fixed);
 }
 
 template <class T>

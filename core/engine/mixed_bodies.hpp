@@ -54,7 +54,7 @@ class SomeBodiesCondensed : public FullBodies<T> {
   std::string name() const override {
     return ", bodies of constant stiffness condensed on " + condensed_.condensation().name();
   }
-  void add_holdings(EngineHoldings& held) const override { condensed_.add_holdings(held); }
+  void add_to_report(EngineReport& report) const override { condensed_.add_to_report(report); }
 
  private:
   using FullBodies<T>::model_, FullBodies<T>::slots_;

@@ -1,5 +1,5 @@
 /// Bodies and contact points in one sparse matrix over the bodies' dofs and the multipliers. Its pattern is fixed for
-/// every contact state. Where points slide along curves it holds the patches next to those that they face too, and is
+/// every contact state. Where points slide along surfaces it holds the patches next to those that they face too, and is
 /// laid out anew where a point gets further.
 #pragma once
 
@@ -37,7 +37,7 @@ class SparseSystem : public PointSystem<T> {
     return by.empty() ? "sparse" : "sparse, " + by;
   }
   long nonzeros() const override { return matrix_.pattern->nonzeros(); }
-  void add_holdings(EngineHoldings& held) const override;
+  void add_to_report(EngineReport& report) const override;
 
  private:
   using PointSystem<T>::model_, PointSystem<T>::kind_, PointSystem<T>::displacements_, PointSystem<T>::multipliers_,
@@ -66,7 +66,7 @@ class SparseSystem : public PointSystem<T> {
   const FullBodies<T>& bodies_;
   BodyMatrix<T> matrix_;  ///< of the bodies alone
   Places places_;         ///< that the pattern has room for; empty: those of the points where nothing has slid
-  std::vector<std::vector<int>> point_map_;  ///< per point: entries_of its rows; none where points slide along curves
+  std::vector<std::vector<int>> point_map_;  ///< per point: entries_of its rows; none where points slide along surfaces
   std::vector<T> values_;                    ///< that are factorised
   LinearSolver<T> solver_;
   bool analysed_ = false;
@@ -218,14 +218,14 @@ Matrix<T> SparseSystem<T>::multiply(const Matrix<T>& x, Taken taken) const {
 }
 
 template <class T>
-void SparseSystem<T>::add_holdings(EngineHoldings& held) const {
-  held.bodies = static_cast<long>(matrix_.values.size() * sizeof(T));
-  held.unsymmetric = kind_.symmetry == Symmetry::general;
-  held.matrix = static_cast<long>(values_.size() * sizeof(T)) + matrix_.pattern->bytes();
-  for (const auto& map : point_map_) held.matrix += static_cast<long>(map.size() * sizeof(int));
-  held.factor = solver_.factor_bytes();
-  held.matrix_entries = static_cast<long>(matrix_.pattern->nonzeros());
-  held.factor_entries = solver_.factor_nonzeros();
+void SparseSystem<T>::add_to_report(EngineReport& report) const {
+  report.bodies = static_cast<long>(matrix_.values.size() * sizeof(T));
+  report.unsymmetric = kind_.symmetry == Symmetry::general;
+  report.matrix = static_cast<long>(values_.size() * sizeof(T)) + matrix_.pattern->bytes();
+  for (const auto& map : point_map_) report.matrix += static_cast<long>(map.size() * sizeof(int));
+  report.factor = solver_.factor_bytes();
+  report.matrix_entries = static_cast<long>(matrix_.pattern->nonzeros());
+  report.factor_entries = solver_.factor_nonzeros();
 }
 
 }  // namespace stickslip

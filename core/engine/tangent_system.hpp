@@ -41,7 +41,7 @@ struct SystemKind {
 SystemKind system_kind(const Model& model, Multipliers multipliers, ConeRadius cone, Backend backend);
 
 /// What an engine holds now, in bytes, and what it has done beside what Counters count.
-struct EngineHoldings {
+struct EngineReport {
   long bodies = 0;                              ///< matrix of the bodies, which the tangents begin from
   long condensed = 0;                           ///< Schur complement of the bodies on the contact dofs
   long bodies_factor = 0;                       ///< factor that it came from
@@ -133,7 +133,7 @@ class TangentSystem {
   virtual std::string name() const = 0;
   virtual int unknowns() const = 0;
   virtual long nonzeros() const = 0;
-  virtual void add_holdings(EngineHoldings& held) const = 0;
+  virtual void add_to_report(EngineReport& report) const = 0;
 };
 
 }  // namespace stickslip

@@ -14,7 +14,7 @@ template <class T>
 void take_labels(const Facing& facing, History<T>& history) {
   const bool faces = facing.patch != no_patch;
   history.patch.push_back(faces ? facing.patch : facing.nearest);
-  history.faces.push_back(faces);
+  history.faced.push_back(faces);
 }
 
 /// Relative displacement w, D, of point p with initial geometry. `compact`: displacements of the contact nodes.

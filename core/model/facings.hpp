@@ -5,7 +5,7 @@
 
 namespace stickslip::detail {
 
-/// What each contact point faces of its curve. `compact`: displacements of the contact nodes; `kept`: per point, the
+/// What each contact point faces of its surface. `compact`: displacements of the contact nodes; `kept`: per point, the
 /// patch on which its foot is to be found, or no_patch to search the surface; empty: search for all points.
 template <class T>
 std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compact, const std::vector<int>& kept = {});

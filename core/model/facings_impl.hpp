@@ -13,7 +13,7 @@ namespace detail {
 /// The patch that point p faced in the last increment, or no_patch.
 template <class T>
 int last_faced(const ContactInput<T>& input, int p) {
-  return input.previous.faces[p] ? input.previous.patch[p] : no_patch;
+  return input.previous.faced[p] ? input.previous.patch[p] : no_patch;
 }
 
 /// A surface where displacements have moved it, and the search along it. Places are from the first vertex at the start,
@@ -108,7 +108,7 @@ void find_along_surface(const ContactInput<T>& input, int surface, const Vector<
         found[p] = now.search.facing_itself(x, now.outward(point), point.own, last_faced(input, p));
         continue;
       }
-    found[p] = now.search.facing(x, now.outward(point), !input.previous.faces[p]);
+    found[p] = now.search.facing(x, now.outward(point), !input.previous.faced[p]);
   }
 }
 

@@ -7,15 +7,15 @@
 namespace stickslip {
 
 /// How nodal vectors are laid out: all nodes, or those of the contact.
-enum class Layout { all, compact };
+enum class NodalLayout { all, compact };
 
 namespace detail {
 
 /// Calls f(Q, first row of the node) for each framed node of the layout.
 template <class T, class F>
-void for_each_frame(const Model& model, const std::vector<Matrix<T>>& frames, Layout layout, F&& f) {
+void for_each_frame(const Model& model, const std::vector<Matrix<T>>& frames, NodalLayout layout, F&& f) {
   for (std::size_t i = 0; i < model.framed.size(); ++i) {
-    const int at = layout == Layout::all ? model.framed[i].node : model.framed[i].place;
+    const int at = layout == NodalLayout::all ? model.framed[i].node : model.framed[i].place;
     if (at >= 0) f(frames[i], at * model.dimension);
   }
 }
@@ -24,7 +24,7 @@ void for_each_frame(const Model& model, const std::vector<Matrix<T>>& frames, La
 
 /// Nodal vectors, one a column, in the frames: Q^T v. (Lazy products: Eigen's others do not know every scalar of ours.)
 template <class T, class V>
-V into_frames(const Model& model, const std::vector<Matrix<T>>& frames, Layout layout, V v) {
+V into_frames(const Model& model, const std::vector<Matrix<T>>& frames, NodalLayout layout, V v) {
   detail::for_each_frame(model, frames, layout, [&](const Matrix<T>& Q, int row) {
     v.middleRows(row, Q.rows()) = Q.transpose().lazyProduct(v.middleRows(row, Q.rows())).eval();
   });
@@ -33,7 +33,7 @@ V into_frames(const Model& model, const std::vector<Matrix<T>>& frames, Layout l
 
 /// Back to the axes: Q v.
 template <class T, class V>
-V out_of_frames(const Model& model, const std::vector<Matrix<T>>& frames, Layout layout, V v) {
+V out_of_frames(const Model& model, const std::vector<Matrix<T>>& frames, NodalLayout layout, V v) {
   detail::for_each_frame(model, frames, layout, [&](const Matrix<T>& Q, int row) {
     v.middleRows(row, Q.rows()) = Q.lazyProduct(v.middleRows(row, Q.rows())).eval();
   });

@@ -25,7 +25,7 @@ struct History {
   /// Of points that slide on surfaces: the patch that a foot is on, per point, and whether the point faced it. One
   /// that faced nothing has the patch that is nearest. Labels, which have no derivative.
   std::vector<int> patch = {};
-  std::vector<char> faces = {};
+  std::vector<char> faced = {};
 };
 
 /// Calls f(part...) with each part of histories that numbers make up, in turn.

@@ -93,9 +93,9 @@ void prescribe(const Model& model, const Slots<T>& slots, double t, Vector<T>& d
 /// of the supports on the bodies.
 template <class T>
 Vector<T> support_forces(const Model& model, const Slots<T>& slots, const Vector<T>& forces) {
-  Vector<T> held = into_frames(model, slots.frames, Layout::all, forces);
+  Vector<T> held = into_frames(model, slots.frames, NodalLayout::all, forces);
   for (int dof : model.free_dofs) held[dof] = T(0);
-  return out_of_frames(model, slots.frames, Layout::all, std::move(held));
+  return out_of_frames(model, slots.frames, NodalLayout::all, std::move(held));
 }
 
 /// Length of a step along a path where the scene gives none: that share of the diagonal of all nodes' box.

@@ -268,20 +268,24 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
   if (slides)
     model.surfaces.push_back(integrated_curve(model, points, pairing.index, pairing.obstacle, pairing.master));
   const std::size_t first = model.points.size();
+  const Points<double> still = Points<double>::Zero(master.points.rows(), master.points.cols());
   for (int node : pairing.slave.nodes) {
     if (of_node[node].empty()) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
     point.master = ContactPoint::Master::segments;
     point.surface = curve;
     point.segments = of_node[node];
+    constexpr double nothing = 1e-12;  // (all of what it faces is too steep: weight_of_angle())
+    if (!slides && !master.facets.empty() &&
+        !(area_share(point.segments, point, master.points, still, model.node_count) > nothing))
+      continue;
     point.slave_nodes = static_cast<int>(nodes_of_segments(node, point.segments, {}, model.node_count).size());
     point.nodes = nodes_of_segments(node, point.segments, point.segments, model.node_count);
     add_point(model, std::move(point));
   }
   if (!slides) return;
   std::vector<Facing> found(model.points.size());
-  find_segments(model, curve, master.points, Points<double>::Zero(master.points.rows(), master.points.cols()),
-                std::vector<int>(found.size(), no_patch), found);
+  find_segments(model, curve, master.points, still, std::vector<int>(found.size(), no_patch), found);
   for (std::size_t p = first; p < model.points.size(); ++p) {
     model.points[p].facing = found[p];
     model.points[p].nodes = found[p].nodes;

@@ -98,7 +98,7 @@ std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Fa
   for_each_place(input.model, point, facing, [&](int place) { places.push_back(place); });
   faced = static_cast<int>(places.size());
   if (!point.segments.empty() || point.foot < 0) return places;
-  if (facing.patch != no_patch || input.previous.faces[p])
+  if (facing.patch != no_patch || input.previous.faced[p])
     for_each_place(input.model.surfaces[point.surface], input.previous.patch[p], [&](int place) {
       if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
     });

@@ -11,18 +11,6 @@
 namespace stickslip {
 namespace {
 
-/// Area of segments as a share of the area of the whole slave facets of their point.
-double area_share(const std::vector<Segment>& segments, const ContactPoint& point, const Points<double>& start,
-                  const Points<double>& moved, int node_count) {
-  const auto nodes = nodes_of_segments(point.nodes[0], point.segments, segments, node_count);
-  const auto initial = [&](int node) -> Vec<double, 2> { return start.col(node).head<2>(); };
-  const auto placed = [&](int node) -> Placed<double> { return {initial(node), moved.col(node).head<2>()}; };
-  const auto not_read = [](const Vec<double, 2>& X, const Vec<double, 2>&) { return detail::Foot<double>{X, X}; };
-  const double area =
-      integrate_segments<double, double>(segments, nodes, placed, Depth<double>{}, not_read, [](auto&&...) {}).area;
-  return area / area_of_facets<double>(point.segments, initial, Depth<double>{});
-}
-
 /// How deep a slave facet of a side in contact with itself may be inside of its other facets.
 class OwnDepths {
  public:
@@ -77,6 +65,17 @@ FacetSearch::Nearest nearest_of_itself(const FacetSearch& search, const MasterSu
 }
 
 }  // namespace
+
+double area_share(const std::vector<Segment>& segments, const ContactPoint& point, const Points<double>& start,
+                  const Points<double>& moved, int node_count) {
+  const auto nodes = nodes_of_segments(point.nodes[0], point.segments, segments, node_count);
+  const auto initial = [&](int node) -> Vec<double, 2> { return start.col(node).head<2>(); };
+  const auto placed = [&](int node) -> Placed<double> { return {initial(node), moved.col(node).head<2>()}; };
+  const auto not_read = [](const Vec<double, 2>& X, const Vec<double, 2>&) { return detail::Foot<double>{X, X}; };
+  const double area =
+      integrate_segments<double, double>(segments, nodes, placed, Depth<double>{}, not_read, [](auto&&...) {}).area;
+  return area / area_of_facets<double>(point.segments, initial, Depth<double>{});
+}
 
 void find_segments(const Model& model, int curve, const Points<double>& start, const Points<double>& moved,
                    const std::vector<int>& last, std::vector<Facing>& found) {

@@ -5,6 +5,10 @@
 
 namespace stickslip {
 
+/// Area of segments as a share of the area of the slave facets of their point, initial; `start` and `moved` as below.
+double area_share(const std::vector<Segment>& segments, const ContactPoint& point, const Points<double>& start,
+                  const Points<double>& moved, int node_count);
+
 /// Sets found[p] for each point p of an integrated curve.
 ///
 ///   curve  index in Model::surfaces

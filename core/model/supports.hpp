@@ -70,10 +70,11 @@ struct Turn {
   }
 };
 
-/// Displacement of the place x when it is rotated by an angle in degrees: by a finite one exactly.
+/// Displacement of the place x when it is rotated by an angle in degrees: at finite strain exactly.
 template <class T, class Place>
-Vector<T> rotated(const Rotation& rotation, const Place& x, const T& degrees, bool finite, const Numbers<T>& numbers) {
-  if (!finite) return degrees * displacement_per_degree<T>(rotation, x, numbers);
+Vector<T> rotated(const Rotation& rotation, const Place& x, const T& degrees, Strains strains,
+                  const Numbers<T>& numbers) {
+  if (strains == Strains::small) return degrees * displacement_per_degree<T>(rotation, x, numbers);
   const auto turn = Turn<T>::about(rotation, degrees, numbers);
   Vector<T> arm(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) arm[i] = x[i] - numbers(rotation.center[i]);
@@ -106,7 +107,7 @@ T prescribed_value(const Scene& scene, const Constraint& constraint, const Place
   const auto move = support.move.find(constraint.axis);
   T u = move == support.move.end() ? T(0) : evaluate(move->second, t, numbers);
   if (support.rotate)
-    u += rotated<T>(*support.rotate, x, evaluate(support.rotate->angle, t, numbers), scene.finite_strain,
+    u += rotated<T>(*support.rotate, x, evaluate(support.rotate->angle, t, numbers), strains_of(scene.finite_strain),
                     numbers)[constraint.axis - 'x'];
   return u;
 }

@@ -34,15 +34,15 @@ std::vector<double> first_factors(const Slots<T>& slots, const RegularisationFie
 /// violations per point, length; a violation up to `negligible` counts as zero. True if a factor rose.
 template <class T>
 bool adapt(const Slots<T>& slots, const RegularisationField<T>& initial, const std::vector<double>& before,
-           const std::vector<double>& now, double negligible, bool eager, std::vector<double>& factor) {
+           const std::vector<double>& now, double negligible, bool eager, std::vector<double>& rho_factor) {
   bool raised = false;
   for (std::size_t p = 0; p < before.size(); ++p) {
     const bool slow = now[p] > 0.25 * before[p], poor = eager && now[p] > 0.01 * before[p];
     if (now[p] <= negligible || !(slow || poor)) continue;
     const double most = slow ? 1e3 : UzawaAL::automatic_multiple.fixed;
-    const double wanted = std::min(4 * factor[p], factor_to(most, slots, initial, p));
-    if (!(wanted > 1.001 * factor[p])) continue;  // (rounding must not decide whether rho is there already)
-    factor[p] = wanted;
+    const double wanted = std::min(4 * rho_factor[p], factor_to(most, slots, initial, p));
+    if (!(wanted > 1.001 * rho_factor[p])) continue;  // (rounding must not decide whether rho is there already)
+    rho_factor[p] = wanted;
     raised = true;
   }
   return raised;

@@ -14,8 +14,8 @@ namespace stickslip {
 
 namespace detail {
 
-/// Whether a point has come to face another patch of its curve. Never for segment-integrated points, which have no kink
-/// between patches.
+/// Whether a point has come to face another patch of its surface. Never for segment-integrated points, which have no
+/// kink between patches.
 inline bool has_crossed(const Facing& before, const Facing& after) {
   return before.pieces.empty() && after.pieces.empty() && before.patch != after.patch;
 }

@@ -141,7 +141,7 @@ class NewtonIterations {
     return !patches.kept().empty() && patches.is_wrong(task_.contact, engine_.compact(unknowns_.u), at_.field);
   }
 
-  /// Whether points that slide along curves give another way on from an end (methods/newton/kept_patches.hpp): from a
+  /// Whether points that slide along surfaces give another way on from an end (methods/newton/kept_patches.hpp): from a
   /// cycle, points kept on their patches; once, from a wrong solution of that, points let go.
   bool goes_on(NewtonEnd& end) {
     const bool wrong = is_converged(end.status) && is_kept_wrong();

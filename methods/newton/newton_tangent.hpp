@@ -213,7 +213,8 @@ NewtonStep<T> NewtonTangent<T>::step(const Vector<T>& rows_u, const Vector<T>& r
   if (task_.compliance) {
     const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     Vector<T> rows = rows_u;
-    add_compact(model, into_frames(model, slots.frames, Layout::compact, own_.carried(model, slots, rows_l)), rows);
+    add_compact(model, into_frames(model, slots.frames, NodalLayout::compact, own_.carried(model, slots, rows_l)),
+                rows);
     step = {engine_.solve({-rows, Matrix<T>()})};
     step.l = own_.recover(model, slots, rows_l, engine_.compact(step.u.col(0)));
   } else {

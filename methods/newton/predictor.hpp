@@ -75,7 +75,7 @@ bool predict(Engine<T>& engine, const EquilibriumTask<T>& task, Evaluator<T>& ev
   if (!task.last) return false;
   if (task.arc) return task.arc->begins && begin_path(engine, task, evaluate, tangent, account, unknowns);
   if (model.effects.linear_bulk) return false;
-  Unknowns<T> start{into_frames(model, slots.frames, Layout::all, task.last->displacement), unknowns.multiplier};
+  Unknowns<T> start{into_frames(model, slots.frames, NodalLayout::all, task.last->displacement), unknowns.multiplier};
   const Vector<T> prescribed = unknowns.u - start.u;
   const auto& points = model.points;
   const bool pushed = std::any_of(points.begin(), points.end(), [&](const auto& p) { return detail::moves(model, p); });
@@ -98,7 +98,7 @@ bool predict(Engine<T>& engine, const EquilibriumTask<T>& task, Evaluator<T>& ev
     rows = engine.tangent_times(at_start, motion);
   }
   add_compact(model, forces, rows);
-  rows = at.rows_u + into_frames(model, slots.frames, Layout::all, std::move(rows));
+  rows = at.rows_u + into_frames(model, slots.frames, NodalLayout::all, std::move(rows));
   for (Eigen::Index row = 0; row < rows.size(); ++row)
     if (!engine.is_free(row)) rows[row] = T(0);
   const auto step = tangent.step(rows, at.rows_l);

@@ -57,10 +57,10 @@ RegularisationField<T> constant(const RegularisationField<double>& rho) {
 
 /// rho after adaption, per point factors (empty: none).
 template <class T>
-RegularisationField<T> adapted(RegularisationField<T> rho, const std::vector<double>& factor) {
-  for (std::size_t p = 0; p < factor.size(); ++p) {
-    rho[p].normal *= T(factor[p]);
-    rho[p].tangential *= T(factor[p]);
+RegularisationField<T> adapted(RegularisationField<T> rho, const std::vector<double>& rho_factor) {
+  for (std::size_t p = 0; p < rho_factor.size(); ++p) {
+    rho[p].normal *= T(rho_factor[p]);
+    rho[p].tangential *= T(rho_factor[p]);
   }
   return rho;
 }

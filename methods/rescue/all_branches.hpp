@@ -56,14 +56,14 @@ struct Solutions {
 
 /// Nothing where there are too many points, or bodies can move although all points stick.
 template <class T>
-std::optional<Solutions<T>> try_all_branches(Run<T>& run, const State<T>& previous, const std::vector<double>& factor,
-                                             double time) {
+std::optional<Solutions<T>> try_all_branches(Run<T>& run, const State<T>& previous,
+                                             const std::vector<double>& rho_factor, double time) {
   if (!can_try_all_branches(run.model)) return std::nullopt;
   if (!run.condensation) run.condensation = std::make_shared<Condensation<T>>(run.model, run.slots, Backend::automatic);
   if (!run.condensation->valid()) return std::nullopt;
   auto engine = condensed_engine(run.model, run.slots, SystemKind{}, run.condensation);  // (factorises nothing)
   const auto initial = initial_regularisation(run.slots, run.method);
-  const auto rho = factor.empty() ? initial : adapted(initial, factor);
+  const auto rho = rho_factor.empty() ? initial : adapted(initial, rho_factor);
   const ContactInput<T> input{run.model, run.slots, rho, previous.history, ConeRadius::augmented, time};
   const Vector<T> u = engine.begin(time, previous.displacement, {}), stored = stored_traction(run.model, previous);
   const ContactProblem problem = contact_problem(input, engine, u, run.condensation->schur(),

@@ -55,17 +55,17 @@ namespace detail {
 template <class T>
 class OverdampedMotion {
  public:
-  OverdampedMotion(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double time, bool several,
-                   const std::vector<char>& damped)
+  OverdampedMotion(Run<T>& run, const State<T>& previous, const std::vector<double>& rho_factor, double time,
+                   Uniqueness uniqueness, const std::vector<char>& damped)
       : run_(run),
         previous_(previous),
-        factor_(factor),
+        rho_factor_(rho_factor),
         time_(time),
-        several_(several),
+        several_(uniqueness == Uniqueness::several),
         all_damped_(damped.empty()),
         damping_(damping(run.model, run.slots, damped)),
         scales_(run.account.scales),
-        inexact_step_(!several && run.free.floating.empty()) {}
+        inexact_step_(!several_ && run.free.floating.empty()) {}
 
   Increment<T> follow(const WorkBound& bound) {
     State<T> place = previous_;
@@ -121,7 +121,7 @@ class OverdampedMotion {
 
   Increment<T> attempt(const Start<T>& start) {
     run_.account.scales = scales_;  // iterates on the way do not count
-    auto found = solve_increment(run_, previous_, factor_, time_, start);
+    auto found = solve_increment(run_, previous_, rho_factor_, time_, start);
     history_.insert(history_.end(), found.history.begin(), found.history.end());
     iterations_ += found.newton;
     return found;
@@ -144,7 +144,7 @@ class OverdampedMotion {
 
   Run<T>& run_;
   const State<T>& previous_;
-  const std::vector<double>& factor_;
+  const std::vector<double>& rho_factor_;
   const double time_;
   const bool several_, all_damped_;
   const Vector<double> damping_;  ///< D
@@ -158,14 +158,14 @@ class OverdampedMotion {
 }  // namespace detail
 
 /// Follows the overdamped motion from `previous` until the method solves the unmodified equations. `damped`: per body,
-/// whether D is its own; empty: all are damped, and the method tries after each step. `several`: there may be more
-/// solutions. Then the solution must have the branches of the step before. No step but the first may then be longer
+/// whether D is its own; empty: all are damped, and the method tries after each step. If there may be several
+/// solutions, the solution must have the branches of the step before. No step but the first may then be longer
 /// than the way covered so far, nor the solution farther from the last step: it could belong to another branch. The
 /// history holds all iterations. Where no attempt succeeds the status is that of the last.
 template <class T>
-Increment<T> follow_motion(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double time,
-                           bool several, const std::vector<char>& damped, const WorkBound& bound) {
-  return detail::OverdampedMotion<T>(run, previous, factor, time, several, damped).follow(bound);
+Increment<T> follow_motion(Run<T>& run, const State<T>& previous, const std::vector<double>& rho_factor, double time,
+                           Uniqueness uniqueness, const std::vector<char>& damped, const WorkBound& bound) {
+  return detail::OverdampedMotion<T>(run, previous, rho_factor, time, uniqueness, damped).follow(bound);
 }
 
 }  // namespace stickslip

@@ -56,11 +56,11 @@ void add_cost(const Increment<T>& before, Increment<T>& increment) {
 template <class T>
 class IncrementSearch {
  public:
-  IncrementSearch(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double time,
+  IncrementSearch(Run<T>& run, const State<T>& previous, const std::vector<double>& rho_factor, double time,
                   const WorkBound& bound, Rescue rescue)
       : run_(run),
         previous_(previous),
-        factor_(factor),
+        rho_factor_(rho_factor),
         time_(time),
         bound_(bound),
         rescue_(rescue),
@@ -69,12 +69,12 @@ class IncrementSearch {
 
   Increment<T> find() {
     if (auto rest = rest_of_floating_bodies()) return std::move(*rest);
-    found_ = solve_increment(run_, previous_, factor_, time_, {.state = previous_});
+    found_ = solve_increment(run_, previous_, rho_factor_, time_, {.state = previous_});
     if (prevents_what_crosses()) return failed(Status::infeasible, "");
     if (!rescues_ || is_final()) return std::move(found_);
     if (!solved() && !balances()) return failed(Status::no_equilibrium, found_.message);
     if (!solved() && in_vain()) return std::move(found_);
-    const auto all = try_all_branches(run_, previous_, factor_, time_);
+    const auto all = try_all_branches(run_, previous_, rho_factor_, time_);
     if (all && all->complete) {
       if (all->states.empty() && !solved()) return without_solution(*all);
       if (auto taken = resting_among(*all)) return std::move(*taken);
@@ -84,12 +84,13 @@ class IncrementSearch {
 
  private:
   bool solved() const { return found_.usable(); }
-  bool several() const { return run_.uniqueness == Uniqueness::several || found_.reversed; }
+  bool several() const { return uniqueness() == Uniqueness::several; }
+  Uniqueness uniqueness() const { return found_.reversed ? Uniqueness::several : run_.uniqueness; }
   bool balances() const { return unbalanced_body(run_.model, run_.slots, time_) == balanced; }
 
   std::optional<Increment<T>> rest_of_floating_bodies() {
     if (run_.free.floating.empty() || !rescues_ || !balances()) return std::nullopt;
-    auto rest = follow_motion(run_, previous_, factor_, time_, false, run_.free.movable, bound_);
+    auto rest = follow_motion(run_, previous_, rho_factor_, time_, Uniqueness::unique, run_.free.movable, bound_);
     if (rest.usable()) return rest;
     run_.account.scales = before_;
     return std::nullopt;
@@ -131,7 +132,7 @@ class IncrementSearch {
     const State<T>& target = all.states[*all.resting];
     if (solved() && same_solution(run_.model, found_.state, target, all.reach)) return found_;
     const RunScales after = std::exchange(run_.account.scales, before_);
-    auto taken = solve_increment(run_, previous_, factor_, time_, {.state = target});
+    auto taken = solve_increment(run_, previous_, rho_factor_, time_, {.state = target});
     if (!taken.usable() || !same_solution(run_.model, taken.state, target, all.reach)) {
       run_.account.scales = after;
       return std::nullopt;
@@ -143,7 +144,7 @@ class IncrementSearch {
   /// The rest that the motion comes to; else what the method found. `all`: solutions to fall back on.
   Increment<T> by_motion(const std::optional<Solutions<T>>& all) {
     const RunScales after = std::exchange(run_.account.scales, before_);
-    auto rest = follow_motion(run_, previous_, factor_, time_, several(), {}, bound_);
+    auto rest = follow_motion(run_, previous_, rho_factor_, time_, uniqueness(), {}, bound_);
     constexpr double runaway = 1e4;  // a multiplier that grows for ever makes any violation small against it
     const bool grown = found_.status == Status::infeasible && norm(values(rest.state.contact.traction)) >
                                                                   runaway * norm(values(found_.state.contact.traction));
@@ -161,7 +162,7 @@ class IncrementSearch {
 
   Run<T>& run_;
   const State<T>& previous_;
-  const std::vector<double>& factor_;
+  const std::vector<double>& rho_factor_;
   double time_;
   const WorkBound& bound_;
   Rescue rescue_;
@@ -172,12 +173,12 @@ class IncrementSearch {
 
 }  // namespace detail
 
-/// One increment from `previous` to `time`; `factor`: adaption of rho so far; `bound`: of the step that it is a part
-/// of, begun.
+/// One increment from `previous` to `time`; `rho_factor`: adaption of rho so far; `bound`: of the step that it is a
+/// part of, begun.
 template <class T>
-Increment<T> find_increment(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double time,
+Increment<T> find_increment(Run<T>& run, const State<T>& previous, const std::vector<double>& rho_factor, double time,
                             const WorkBound& bound, Rescue rescue = Rescue::all) {
-  return detail::IncrementSearch<T>(run, previous, factor, time, bound, rescue).find();
+  return detail::IncrementSearch<T>(run, previous, rho_factor, time, bound, rescue).find();
 }
 
 }  // namespace stickslip

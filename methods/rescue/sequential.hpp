@@ -99,7 +99,7 @@ class Sequence {
     int waited = 0;  // steps since the least residual was halved
     Vector<T> about = unknowns_.u;
     if (task_.last)
-      about = into_frames(task_.contact.model, task_.contact.slots.frames, Layout::all, task_.last->displacement);
+      about = into_frames(task_.contact.model, task_.contact.slots.frames, NodalLayout::all, task_.last->displacement);
     const auto closed = [](ContactState s) { return s != ContactState::open; };
     if (std::any_of(task_.resumed.begin(), task_.resumed.end(), closed))
       branches_.assign(task_.resumed.begin(), task_.resumed.end());
@@ -107,7 +107,7 @@ class Sequence {
       const auto before = branches_;
       const int unsettled_before = unsettled_;
       const bool again = step == 0 && engine_.has_tangent_near({engine_.spread(about), task_.contact.previous.bodies});
-      if (!solve_linear(about, again ? HeldTangent::last : HeldTangent::at_motion)) return false;
+      if (!solve_linear(about, again ? FixedTangent::last : FixedTangent::at_motion)) return false;
       auto at = evaluate_(unknowns_);
       for (int halvings = 0; !at.residuals.finite() && halvings < 6; ++halvings) {
         unknowns_.u -= T(0.5) * (unknowns_.u - about);
@@ -146,15 +146,15 @@ class Sequence {
  private:
   /// Solves the contact problem of the bodies linearised about a displacement, starting from `branches_`, if there are
   /// any. False if it has no solution.
-  bool solve_linear(const Vector<T>& about, HeldTangent tangent) {
+  bool solve_linear(const Vector<T>& about, FixedTangent tangent) {
     const Vector<T> moved = engine_.spread(about);
     {
       const Stopwatch time(account_.seconds.bodies);
-      engine_.hold_bodies({moved, task_.contact.previous.bodies, task_.contact.time}, unknowns_.u, tangent);
+      engine_.fix_linearisation({moved, task_.contact.previous.bodies, task_.contact.time}, unknowns_.u, tangent);
     }
     prescribed_ = unknowns_.u;
     const bool solved = pivot();
-    engine_.release_bodies();
+    engine_.release_linearisation();
     return solved;
   }
 
@@ -169,7 +169,7 @@ class Sequence {
       const Unknowns<T> found = unknowns_;
       const auto branches = branches_;
       const int unsettled = unsettled_;
-      const bool solved = solve_linear(found.u, HeldTangent::last);
+      const bool solved = solve_linear(found.u, FixedTangent::last);
       auto next = evaluate_(unknowns_);
       if (!solved || !next.residuals.finite() || next.residuals.largest() >= last) {
         unknowns_ = found;

@@ -11,14 +11,14 @@ namespace {
 constexpr long most_combinations = 4096;  // six points with friction
 
 /// A branch of a point. `sign`: s, that of t_T in slip.
-struct Branch {
+struct SignedState {
   ContactState state = ContactState::open;
   double sign = 0;
 };
 
-std::vector<Branch> branches_of(const ContactProblem::Point& point) {
+std::vector<SignedState> signed_states_of(const ContactProblem::Point& point) {
   if (point.tangential < 0) return {{ContactState::open, 0}, {ContactState::slip, 0}};
-  std::vector<Branch> branches{{ContactState::open, 0}, {ContactState::stick, 0}};
+  std::vector<SignedState> branches{{ContactState::open, 0}, {ContactState::stick, 0}};
   for (ContactState state : {ContactState::slip, ContactState::limited})
     if (point.friction.has(state))
       for (double sign : {-1.0, 1.0}) branches.push_back({state, sign});
@@ -70,7 +70,7 @@ struct System {
   SmallVector right;
 };
 
-System system_of(const ContactProblem& problem, const Relation& r, const std::vector<Branch>& combination) {
+System system_of(const ContactProblem& problem, const Relation& r, const std::vector<SignedState>& combination) {
   System system{r.of_g, r.free};
   for (std::size_t p = 0; p < combination.size(); ++p) {
     const auto& point = problem.points[p];
@@ -96,7 +96,7 @@ struct Outcome {
   SmallVector g, tau;
 };
 
-Outcome outcome_of(const ContactProblem& problem, const std::vector<Branch>& combination, const SmallVector& x) {
+Outcome outcome_of(const ContactProblem& problem, const std::vector<SignedState>& combination, const SmallVector& x) {
   Outcome out{x, SmallVector::Zero(x.size())};
   for (std::size_t p = 0; p < combination.size(); ++p) {
     const auto& point = problem.points[p];
@@ -119,10 +119,10 @@ Outcome outcome_of(const ContactProblem& problem, const std::vector<Branch>& com
 /// Calls f(combination) for each combination of branches until it returns false.
 template <class F>
 void for_each_combination(const ContactProblem& problem, F&& f) {
-  std::vector<std::vector<Branch>> choices;
-  for (const auto& point : problem.points) choices.push_back(branches_of(point));
+  std::vector<std::vector<SignedState>> choices;
+  for (const auto& point : problem.points) choices.push_back(signed_states_of(point));
   std::vector<std::size_t> digit(choices.size(), 0);
-  std::vector<Branch> combination(choices.size());
+  std::vector<SignedState> combination(choices.size());
   for (bool more = true; more;) {
     for (std::size_t p = 0; p < choices.size(); ++p) combination[p] = choices[p][digit[p]];
     if (!f(combination)) return;
@@ -139,7 +139,7 @@ double noise_of(const Relation& r) { return 1e3 * unit_roundoff * r.moved.lpNorm
 
 /// Whether an outcome satisfies the conditions of its branches up to rounding. Rounding is a share of the largest
 /// lengths and tractions, and noise_of().
-bool is_valid(const ContactProblem& problem, const std::vector<Branch>& combination, const Outcome& at,
+bool is_valid(const ContactProblem& problem, const std::vector<SignedState>& combination, const Outcome& at,
               const Relation& r, double rounding) {
   const double noise = noise_of(r),
                length = rounding * std::max(at.g.cwiseAbs().maxCoeff(), r.free.cwiseAbs().maxCoeff()) + noise;
@@ -183,7 +183,7 @@ Uniqueness uniqueness_of(const ContactProblem& problem) {
   const auto r = relation(problem, 0, {});
   bool reversed = false, vanishes = false;
   if (r)
-    for_each_combination(problem, [&](const std::vector<Branch>& combination) {
+    for_each_combination(problem, [&](const std::vector<SignedState>& combination) {
       const double share = share_of_determinant(system_of(problem, *r, combination).matrix);
       vanishes |= std::abs(share) <= rounding_of_determinants;
       reversed = share < -rounding_of_determinants;
@@ -206,7 +206,7 @@ std::optional<std::vector<BranchSolution>> all_solutions(const ContactProblem& p
   std::vector<BranchSolution> solutions;
   std::vector<Vector<double>> tractions;  // as lengths
   const double noise = noise_of(*r);
-  for_each_combination(problem, [&](const std::vector<Branch>& combination) {
+  for_each_combination(problem, [&](const std::vector<SignedState>& combination) {
     const System system = system_of(problem, *r, combination);
     const Eigen::PartialPivLU<SmallMatrix> lu(system.matrix);
     const Outcome at = outcome_of(problem, combination, lu.solve(system.right));

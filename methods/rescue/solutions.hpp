@@ -138,7 +138,7 @@ ContactProblem contact_problem(const ContactInput<T>& input, const Engine<T>& en
       for (std::size_t n = 0; n < point.places.size(); ++n)
         column.template segment<2>(2 * point.places[n]) += geometry.weights[n] * direction;
       const int k = point.multiplier + c;
-      directions.col(k) = values(into_frames(model, input.slots.frames, Layout::compact, std::move(column)));
+      directions.col(k) = values(into_frames(model, input.slots.frames, NodalLayout::compact, std::move(column)));
       problem.weight[k] = value(input.slots.stiffness[p]);
       problem.area[k] = value(geometry.area);
       problem.start[k] = value(c == 0 ? field.gap[p] : field.slip[tangential_offset(model, p)]);

@@ -22,7 +22,7 @@ Vector<double> driven_motion(const Model& model, const Slots<T>& slots, double t
     for (const auto& [axis, table] : obstacle.move) moved[axis - 'x'] = value(evaluate(table, time, slots.numbers));
     if (const auto& rotate = obstacle.rotate)
       moved += values(rotated<T>(*rotate, slots.points.col(point.nodes[0]),
-                                 evaluate(rotate->angle, time, slots.numbers), true, slots.numbers));
+                                 evaluate(rotate->angle, time, slots.numbers), Strains::finite, slots.numbers));
     motion.insert(motion.end(), moved.begin(), moved.end());
   }
   return Eigen::Map<Vector<double>>(motion.data(), static_cast<Eigen::Index>(motion.size()));

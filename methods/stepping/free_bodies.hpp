@@ -64,7 +64,7 @@ std::string free_motion(const Model& model, const Slots<T>& slots, std::size_t b
   for (int node = body.first; node < body.end; ++node) nodal.middleRows(2 * node, 2) = motions_at(points.col(node));
   std::vector<Matrix<double>> frames;
   for (const auto& frame : slots.frames) frames.push_back(frame.unaryExpr([](const T& x) { return value(x); }));
-  nodal = into_frames(model, frames, Layout::all, std::move(nodal));
+  nodal = into_frames(model, frames, NodalLayout::all, std::move(nodal));
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();  // sum of the constraints; its null space is the free motions
   const auto hold = [&](const Eigen::RowVector3d& row) { squares += row.transpose() * row; };
   if (model.scene.space == Space::axisymmetric) {  // a body of revolution moves rigidly along its axis only

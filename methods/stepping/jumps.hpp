@@ -29,8 +29,8 @@ void count_solutions(Run<T>& run, const State<T>& previous, double time, Increme
 /// None if there is no jump. The search is made in two cases: solutions were counted, and either end has several or a
 /// tangent on the way had a determinant of the other sign; or nonlinear bodies move suddenly.
 template <class T>
-std::optional<double> find_jump(Run<T>& run, const State<T>& previous, const std::vector<double>& factor, double start,
-                                double end, const State<T>& reached) {
+std::optional<double> find_jump(Run<T>& run, const State<T>& previous, const std::vector<double>& rho_factor,
+                                double start, double end, const State<T>& reached) {
   constexpr int halvings = 10;
   constexpr double much = 0.25, nothing = 1e-9;
   const auto moved = [&](const State<T>& from, const State<T>& to) {
@@ -44,11 +44,11 @@ std::optional<double> find_jump(Run<T>& run, const State<T>& previous, const std
   bound.begin();
   for (int level = 0; level < halvings && solved; ++level) {
     const double middle = (start + end) / 2;
-    auto half = find_increment(run, before, factor, middle, bound);
+    auto half = find_increment(run, before, rho_factor, middle, bound);
     solved = half.usable();
     if (!solved) break;
     const bool near = moved(before, half.state) < much * moved(before, after);
-    auto rest = find_increment(run, half.state, factor, end, bound);
+    auto rest = find_increment(run, half.state, rho_factor, end, bound);
     solved = rest.usable() || near;  // (what still stands near the start jumps later, found or not)
     if (!solved) break;
     const bool first = rest.usable() && moved(before, half.state) >= moved(half.state, rest.state);
@@ -89,7 +89,7 @@ bool is_sudden(const Model& model, const Slots<T>& slots, const std::vector<Incr
 /// Counts the solutions of an increment that was solved from `start` to its end, and looks for a jump to it where there
 /// may be one.
 template <class T>
-void look_beside(Run<T>& run, const Trajectory<T>& trajectory, const std::vector<double>& factor, double start,
+void look_beside(Run<T>& run, const Trajectory<T>& trajectory, const std::vector<double>& rho_factor, double start,
                  Increment<T>& increment) {
   const auto& before = trajectory.increments;
   const State<T>& previous = trajectory.last();
@@ -99,7 +99,7 @@ void look_beside(Run<T>& run, const Trajectory<T>& trajectory, const std::vector
   increment.pace = pace_of(run.model, previous, increment.state, increment.time - trajectory.last_time());
   const bool sudden = is_sudden(run.model, run.slots, before, increment.time, increment.pace);
   if ((increment.counted && folded) || sudden)
-    increment.jump = find_jump(run, previous, factor, start, increment.time, increment.state);
+    increment.jump = find_jump(run, previous, rho_factor, start, increment.time, increment.state);
 }
 
 }  // namespace detail

@@ -9,9 +9,10 @@
 namespace stickslip {
 namespace {
 
-RegularisationField<Direction> regularisation_of_scheme(const Differentiation& problem, std::vector<double> factor) {
-  for (double& f : factor) f *= scheme_of(problem.method).oversize;
-  return std::move(regularisation_blocks(problem, factor)[0]);
+RegularisationField<Direction> regularisation_of_scheme(const Differentiation& problem,
+                                                        std::vector<double> rho_factor) {
+  for (double& f : rho_factor) f *= scheme_of(problem.method).oversize;
+  return std::move(regularisation_blocks(problem, rho_factor)[0]);
 }
 
 /// The search of one equilibrium. First all contradicted choices are changed at once, then one by one; if there are few
@@ -20,12 +21,12 @@ class TieSearch {
  public:
   /// `increment`: to be differentiated; `at`: its equilibrium, whose choices the search changes.
   TieSearch(Differentiation& problem, const State<double>& previous, const Increment<double>& increment,
-            State<double>& at, const std::vector<double>& factor, const SideDirection& along)
+            State<double>& at, const std::vector<double>& rho_factor, const SideDirection& along)
       : problem_(problem),
         previous_(previous),
         increment_(increment),
         at_(at),
-        own_(adapted(initial_regularisation(problem.slots, problem.method), factor)),
+        own_(adapted(initial_regularisation(problem.slots, problem.method), rho_factor)),
         of_{.model = problem.model,
             .slots = problem.slots,
             .at = at,
@@ -35,7 +36,7 @@ class TieSearch {
             .time = increment.time,
             .largest = along.largest_so_far},
         ties_(ties_of(of_)),
-        rho_(regularisation_of_scheme(problem, factor)),
+        rho_(regularisation_of_scheme(problem, rho_factor)),
         along_(along) {}
 
   /// Runs the search. True if a derivative confirms all of its choices; it is then in the block, its choices in `at`.
@@ -195,8 +196,8 @@ class TieSearch {
 
 bool differentiate_side(Differentiation& problem, const State<double>& previous, Increment<double>& increment,
                         const SideDirection& along, Unconfirmed unconfirmed) {
-  const auto search = [&](const Increment<double>& of, State<double>& at, const std::vector<double>& factor) {
-    TieSearch choices(problem, previous, of, at, factor, along);
+  const auto search = [&](const Increment<double>& of, State<double>& at, const std::vector<double>& rho_factor) {
+    TieSearch choices(problem, previous, of, at, rho_factor, along);
     if (choices.run()) return true;
     if (unconfirmed == Unconfirmed::fails) return false;
     choices.take_holding();

@@ -1,5 +1,5 @@
-/// The commands of the program. Each returns the exit code: 0 done, 2 bad input, 3 the solve
-/// failed in a diagnosed way. Faults go to standard error, results to files and standard output.
+/// The commands of the program. Each returns the exit code: 0 done, 2 bad input, 3 the solve failed in a diagnosed way.
+/// Faults go to standard error, results to files and standard output.
 #pragma once
 
 #include <optional>

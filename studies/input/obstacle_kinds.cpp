@@ -1,6 +1,6 @@
 #include "studies/input/obstacle_kinds.hpp"
 
-#include <concepts>
+#include <tuple>
 #include <type_traits>
 
 #include "studies/input/described.hpp"
@@ -41,38 +41,25 @@ std::optional<RigidSurface> read_polyline(const JsonNode& node, SceneReading& re
   return polyline;
 }
 
+json value_json(const Number& number) { return number.value; }
+json value_json(bool flag) { return flag; }
 template <class Vector>
-json values_json(const Vector& numbers) {
+json value_json(const Vector& numbers) {
   json out = json::array();
   for (const Number& number : numbers) out.push_back(number.value);
   return out;
 }
 
-json as_drawn(const Plane& plane) {
-  return {{"plane", {{"point", values_json(plane.point)}, {"normal", values_json(plane.normal)}}}};
-}
-
-json as_drawn(const Circle& circle) {
-  return {
-      {"circle", {{"center", values_json(circle.center)}, {"radius", circle.radius.value}, {"inside", circle.inside}}}};
-}
-
-json as_drawn(const Sphere& sphere) {
-  return {
-      {"sphere", {{"center", values_json(sphere.center)}, {"radius", sphere.radius.value}, {"inside", sphere.inside}}}};
-}
-
-json as_drawn(const Cylinder& cylinder) {
-  return {{"cylinder",
-           {{"point", values_json(cylinder.point)},
-            {"axis", values_json(cylinder.axis)},
-            {"radius", cylinder.radius.value},
-            {"inside", cylinder.inside}}}};
+template <Described S>
+json as_drawn(const S& surface) {
+  json values;
+  std::apply([&](const auto&... of) { ((values[of.key] = value_json(surface.*of.member)), ...); }, S::keys());
+  return {{S::key, values}};
 }
 
 json as_drawn(const Polyline& polyline) {
   json vertices = json::array();
-  for (const auto& x : polyline.points) vertices.push_back(values_json(x));
+  for (const auto& x : polyline.points) vertices.push_back(value_json(x));
   if (polyline.closed) vertices.push_back(vertices.front());
   return {{"polyline", {{"points", vertices}}}};
 }
@@ -91,12 +78,9 @@ ObstacleKind entry_of(std::type_identity<Polyline>) { return {"polyline", polyli
 
 template <class S>
 ObstacleKind obstacle_kind(std::type_identity<S>) {
-  static_assert((Described<S> || requires { entry_of(std::type_identity<S>()); }) &&
-                    requires(const S& surface) {
-                      { as_drawn(surface) } -> std::same_as<json>;
-                    },
-                "a surface of core/contact/rigid_surfaces.hpp lacks its keys(), or as_drawn() in "
-                "studies/input/obstacle_kinds.cpp");
+  static_assert(
+      Described<S> || requires { entry_of(std::type_identity<S>()); },
+      "a surface of core/contact/rigid_surfaces.hpp lacks its keys()");
   ObstacleKind kind;
   if constexpr (Described<S>)
     kind = {S::key, schema_of_object<S>, read_as<RigidSurface, S>};

@@ -1,6 +1,5 @@
 /// Rigid surfaces as files name them: for each its key, its schema, its reader and what pictures know of it. They are
-/// made from what a surface says of its keys (core/algebra/described.hpp); how it is drawn is an as_drawn() in
-/// obstacle_kinds.cpp.
+/// made from what a surface says of its keys (core/algebra/described.hpp).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,8 +15,7 @@ struct ObstacleKind {
   bool is_in_plane = false, is_in_space = false;                                     ///< where it is made for
 };
 
-/// {"KIND": {...}} of picture.json, where it stands at the start. The report draws planes, circles and polylines: any
-/// other is one of these.
+/// {"KIND": {...}} of picture.json, where it stands at the start. The report draws planes, circles and polylines.
 nlohmann::json drawn(const RigidSurface& surface);
 
 /// All, in the order of RigidSurface.

@@ -1,9 +1,8 @@
 /// A line drawing, written once and given out as SVG (inside a page or as a file of its own) and as PGF.
 ///
 /// Coordinates are pixels of SVG, y down; a pixel is 0.75 points of PGF. Colours are "#RRGGBB", "curve #RRGGBB" or
-/// one of the names ink, soft, line, paper: in a page the latter two follow its light or dark scheme, in files they are
-/// those of the light one. ""
-/// draws nothing.
+/// one of the names ink, soft, line, paper: in a page these follow its light or dark scheme, in files they are those of
+/// the light one. "" draws nothing.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "studies/io/numerals.hpp"
 #include "studies/report/drawing.hpp"
@@ -24,6 +28,30 @@ std::string take_raised(std::string_view& text) {
   return out;
 }
 
+/// What LaTeX has of its own for letters that it does not know as text (pdfTeX stops at them).
+constexpr std::array<std::pair<std::string_view, std::string_view>, 56> letters_of_formulas{
+    {{"α", "\\alpha"},   {"β", "\\beta"},     {"γ", "\\gamma"},    {"δ", "\\delta"}, {"ε", "\\varepsilon"},
+     {"ζ", "\\zeta"},    {"η", "\\eta"},      {"θ", "\\theta"},    {"ι", "\\iota"},  {"κ", "\\kappa"},
+     {"λ", "\\lambda"},  {"μ", "\\mu"},       {"ν", "\\nu"},       {"ξ", "\\xi"},    {"ο", "o"},
+     {"π", "\\pi"},      {"ρ", "\\rho"},      {"ς", "\\varsigma"}, {"σ", "\\sigma"}, {"τ", "\\tau"},
+     {"υ", "\\upsilon"}, {"φ", "\\varphi"},   {"χ", "\\chi"},      {"ψ", "\\psi"},   {"ω", "\\omega"},
+     {"ϕ", "\\phi"},     {"ϑ", "\\vartheta"}, {"Α", "A"},          {"Β", "B"},       {"Γ", "\\Gamma"},
+     {"Δ", "\\Delta"},   {"Ε", "E"},          {"Ζ", "Z"},          {"Η", "H"},       {"Θ", "\\Theta"},
+     {"Ι", "I"},         {"Κ", "K"},          {"Λ", "\\Lambda"},   {"Μ", "M"},       {"Ν", "N"},
+     {"Ξ", "\\Xi"},      {"Ο", "O"},          {"Π", "\\Pi"},       {"Ρ", "P"},       {"Σ", "\\Sigma"},
+     {"Τ", "T"},         {"Υ", "\\Upsilon"},  {"Φ", "\\Phi"},      {"Χ", "X"},       {"Ψ", "\\Psi"},
+     {"Ω", "\\Omega"},   {"−", "-"},          {"≤", "\\leq"},      {"≥", "\\geq"},   {"∞", "\\infty"},
+     {"∂", "\\partial"}}};
+
+/// The letter of a formula that `text` begins with, taken off it; empty: none.
+std::string_view take_letter(std::string_view& text) {
+  const auto found = std::find_if(letters_of_formulas.begin(), letters_of_formulas.end(),
+                                  [&](const auto& letter) { return text.starts_with(letter.first); });
+  if (found == letters_of_formulas.end()) return {};
+  text.remove_prefix(found->first.size());
+  return found->second;
+}
+
 }  // namespace
 
 std::string tex_text(const std::string& text) {
@@ -31,6 +59,12 @@ std::string tex_text(const std::string& text) {
   for (std::string_view rest = text; !rest.empty();) {
     if (const std::string power = take_raised(rest); !power.empty()) {
       out += "\\textsuperscript{" + power + "}";
+      continue;
+    }
+    if (const std::string_view letter = take_letter(rest); !letter.empty()) {
+      out += "\\(";
+      out += letter;
+      out += "\\)";
       continue;
     }
     const char c = rest.front();

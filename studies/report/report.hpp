@@ -21,9 +21,9 @@ std::vector<std::string> report_files();
 /// Throws std::runtime_error, with the path, where results.jsonl cannot be read or study.json or picture.json is no
 /// JSON, and its kind std::system_error where the file cannot be written.
 ///
-/// Conventions it relies on: interface tractions `normal` are negative in compression
-/// and pressure is drawn positive, for the analytic curves too; an analytic curve's `s` is the contact's `arc`, its `x`
-/// (used where present) the contact's `x`; contact points of picture.json stand at their deformed place.
+/// Conventions it relies on: interface tractions `normal` are negative in compression and pressure is drawn positive,
+/// for the analytic curves too; an analytic curve's `s` is the contact's `arc`, its `x` (used where present) the
+/// contact's `x`; contact points of picture.json stand at their deformed place.
 void write_report(const std::filesystem::path& directory, Pdfs pdfs = Pdfs::left_out);
 
 /// The same of the run in `directory`, from result.json and, where it is there, picture.json.

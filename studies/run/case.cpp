@@ -331,7 +331,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   solve(problem->model, problem->slots, method, followed, workspace, result.trajectory);
   condensation = workspace.condensation;
   result.nonzeros = workspace.engine->nonzeros();
-  result.engine = workspace.engine->holdings();
+  result.engine = workspace.engine->report();
   if (condensation && !shared) result.condensing = condensation->counters;
   if (result.engine.body_solves > 0)
     result.body_solves =
@@ -342,7 +342,7 @@ CaseResult run_case(std::shared_ptr<const Problem> problem, const Method& method
   if (has_tangent(result.trajectory)) result.condition_estimate = workspace.engine->condition_estimate();
   if (result.trajectory.solved_count() > 0) {  // a step that failed takes nothing from those before
     differentiate_case(workspace, derivatives, result);
-    result.sensitivity_body_solves = workspace.engine->holdings().body_solves - result.engine.body_solves;
+    result.sensitivity_body_solves = workspace.engine->report().body_solves - result.engine.body_solves;
   }
   result.steps = gather_steps(result, reader);
   result.scales = reader.accuracy().scales;

@@ -78,8 +78,8 @@ struct CaseResult {
   Matrix<double> objectives_below, objectives_above;
   double condition_estimate = 0;
   long nonzeros = 0;
-  EngineHoldings engine;  ///< at the end of the solution, before its derivatives
-  Counters condensing;    ///< of trajectory.counters, what made the condensation
+  EngineReport engine;  ///< at the end of the solution, before its derivatives
+  Counters condensing;  ///< of trajectory.counters, what made the condensation
   /// Right-hand sides solved with the bodies' factor, one way or back counting half: of the solution, of derivatives.
   double body_solves = 0, sensitivity_body_solves = 0;
   double one_sided_seconds = 0;  ///< of gradients.seconds, for one_sided

@@ -129,7 +129,7 @@ std::vector<std::string> export_system(const std::filesystem::path& folder, cons
   const auto& slots = result.problem->slots;
   const auto& increment = result.trajectory.increments.back();
   const auto& state = increment.state;
-  const auto in_frames = [&](const Vector<double>& v) { return into_frames(model, slots.frames, Layout::all, v); };
+  const auto in_frames = [&](const Vector<double>& v) { return into_frames(model, slots.frames, NodalLayout::all, v); };
   const Sparse K = stiffness_of(model, slots), G = gradient_of(model, slots), select = selection(model);
   const Vector<double> u = in_frames(state.displacement);
   const Vector<double> prescribed = u - Vector<double>(select.transpose() * (select * u));

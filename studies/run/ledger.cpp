@@ -63,7 +63,7 @@ double sides_bytes(const std::optional<OneSided>& sides) {
 
 /// Of a factor that holds both triangles because friction makes them differ, the one that a symmetric factor of the
 /// same entries would spare. (A dense factor is a square in either case.)
-double spared_triangle(const EngineHoldings& engine, bool dense, double rows) {
+double spared_triangle(const EngineReport& engine, bool dense, double rows) {
   const auto entries = static_cast<double>(engine.factor_entries);
   if (!engine.unsymmetric || dense || entries <= rows) return 0;
   return static_cast<double>(engine.factor) * (entries - rows) / 2 / entries;

@@ -15,7 +15,7 @@ PlanePlace obstacle_displacement(const Problem& problem, const Obstacle& obstacl
     if (axis < 'z') u[axis - 'x'] = evaluate(table, time, numbers);
   if (obstacle.rotate)
     u += rotated<double>(*obstacle.rotate, x, evaluate(obstacle.rotate->angle, time, numbers),
-                         problem.model.scene.finite_strain, numbers);
+                         strains_of(problem.model.scene.finite_strain), numbers);
   return u;
 }
 

@@ -38,12 +38,8 @@ Warning far_side_warning(const Problem& problem, int c, int nodes) {
 Warning turned_warning(const Problem& problem, int c, const std::string& words, int faulty) {
   const auto& contact = problem.model.scene.contacts[c];
   const Obstacle& obstacle = *obstacle_of(problem.model, c);
-  const char* remedy = std::holds_alternative<Polyline>(obstacle.shape)
-                           ? "turn the points of the polyline round: its solid is on their right"
-                       : std::holds_alternative<Plane>(obstacle.shape)
-                           ? "turn the normal of the plane round: it points out of the solid"
-                           : R"(look at "inside" of the circle: true is a cup, solid outside)";
-  return {WarningCode::turned_surface, contact.name, static_cast<double>(faulty), remedy, contact.name + ": " + words};
+  return {WarningCode::turned_surface, contact.name, static_cast<double>(faulty), if_turned(obstacle.shape),
+          contact.name + ": " + words};
 }
 }  // namespace
 

@@ -20,8 +20,8 @@ struct Loss {
 /// job is a process of its own too, so that nothing that `work` does can end the caller's. What `work` changes in
 /// memory stays in its process. Throws std::runtime_error where a piece throws; all processes have ended then, and they
 /// end with the caller's. Where a process ends before its piece is done, `lost` is called for that, and another process
-/// goes on with the rest, a piece that it was about to begin among them. pre: `work` returns no
-/// newline; the caller's other threads hold nothing that `work` needs.
+/// goes on with the rest, a piece that it was about to begin among them. pre: `work` returns no newline; the caller's
+/// other threads hold nothing that `work` needs.
 void run_in_processes(int jobs, std::size_t count, const std::function<std::string(std::size_t)>& work,
                       const std::function<void(std::size_t, const std::string&)>& done,
                       const std::function<void(std::size_t, const Loss&)>& lost);

@@ -74,11 +74,6 @@ class Faces {
     return y;
   }
   double size(int p) const { return (boxes_[p][1] - boxes_[p][0]).norm(); }
-  /// The gap in lengths of the first edge of the patch.
-  double share_outside(const Near& at) const {
-    const int p = at.place.patch, m = patches_[p].sides();
-    return at.gap / (jet(p, corner_at(m, 1)) - jet(p, corner_at(m, 0))).col(0).norm();
-  }
 
   Near near(int p, const Vec2& at, const Vec3& x) const {
     const Mat3 y = jet(p, at);
@@ -176,12 +171,13 @@ class Faces {
     std::ranges::sort(near, {}, [](const Near& at) { return at.place.patch; });
     const double most = std::ranges::max(near, {}, &Near::gap).gap - at_end * size(near[0].place.patch);
     std::iter_swap(near.begin(), std::ranges::find_if(near, [&](const Near& at) { return at.gap >= most; }));
-    if (share_outside(near[0]) >= -1e-6 || outward.isZero()) return true;
+    const double edge = std::sqrt(boxes_[near[0].place.patch][2].norm());  // of a square of its area
+    if (near[0].gap >= -1e-6 * edge || outward.isZero(0)) return true;
     auto all = closest(x, Vec3::Zero());
     const bool is_outside = std::ranges::any_of(all, [](const Near& at) { return at.gap > 0; });
     if (!settle_on(all, {seeker.node, x})) return !is_outside;
-    const bool is_wall = !seeker.comes_on && !opposes(all[0].normal, near[0].normal);  // (a little past a sole's end)
-    return share_outside(all[0]) < (is_wall ? 0.01 : 0);
+    const bool is_beside = !seeker.comes_on && near[0].gap > -0.25 * edge && !opposes(all[0].normal, near[0].normal);
+    return all[0].gap < (is_beside ? 0.01 * edge : 0);  // (a little past the end of a sole)
   }
 
   bool finite_;

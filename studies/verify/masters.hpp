@@ -70,7 +70,7 @@ struct Seeker {
 /// Cosine by which what is faced looks against the slave's side: no more than 75 degrees from facing it.
 constexpr double least_opposed = 0.25;
 inline bool opposes(const Vec3& normal, const Vec3& outward) {
-  return outward.isZero() || normal.dot(outward) < -least_opposed * normal.norm() * outward.norm();
+  return outward.isZero(0) || normal.dot(outward) < -least_opposed * normal.norm() * outward.norm();
 }
 
 /// A place of contact: a slave node, or the multiplier of one. Its weights are 1 of the slave, -N_i of the master. The
@@ -145,7 +145,7 @@ class Master {
     if (faced.patch < 0) return foot.away_from(x);
     for (int i = 0; i < 4 && !rigid(); ++i) foot.weights.emplace_back(patches[place.patch].vertex[i], -N[i]);
     if (frozen_) share_vertex(seeker, foot);
-    if (!scene_.finite && !rigid() && !outward.isZero())  // between two solids: the bisector of their normals
+    if (!scene_.finite && !rigid() && !outward.isZero(0))  // between two solids: the bisector of their normals
       foot.normal = (foot.normal - seeker.against(foot.normal).normalized()).normalized();
     foot.gap = foot.normal.dot(x - foot.y);
     return foot;
@@ -338,16 +338,18 @@ class Master {
       const double past = end ? place.xi - 1 : -place.xi, still_faced = frozen_ ? 1e-6 : 0.01;  // of a facet
       return is_free && past > still_faced ? Place{} : place;
     };
-    const auto outside = [&](const Place& place) {  // share of a facet
-      const Vec3 slope = position(place, 1);
-      return (x - position(place)).dot(right_of(slope)) / slope.squaredNorm();
+    const auto gap = [&](const Place& place) {
+      return (x - position(place)).dot(right_of(position(place, 1)).normalized());
     };
     const Place place = facing(seeker);
-    if (place.patch < 0 || itself_ || frozen_ || outside(place) >= -1e-6 || seeker.outward.isZero()) return place;
+    if (place.patch < 0 || itself_ || frozen_ || seeker.outward.isZero(0)) return place;
+    const double size = line_of(place.patch).tau.norm();
+    if (gap(place) >= -1e-6 * size) return place;
     const Place any = facing({seeker.node, x});
     if (any.patch < 0) return place;
-    const bool is_wall = !seeker.comes_on && !verify::opposes(right_of(position(any, 1)), right_of(position(place, 1)));
-    return outside(any) >= (is_wall ? 0.01 : 0) ? Place{} : place;  // (still faced a little past the end of a sole)
+    const bool is_beside = !seeker.comes_on && gap(place) > -0.25 * size &&
+                           !verify::opposes(right_of(position(any, 1)), right_of(position(place, 1)));
+    return gap(any) >= (is_beside ? 0.01 * size : 0) ? Place{} : place;  // (a little past the end of a sole)
   }
 
   /// Small strain, at a vertex of facets: the bisector of the two, and half of the slide along each of them.

@@ -155,7 +155,7 @@ TEST(FrictionLaw, OfTrescaKeepsTheTangentSymmetric) {
       RunOptions options;
       options.linear_algebra.engine = engine;
       ASSERT_TRUE(is_converged(solve(model, slots, Penalty{}, options, workspace).status));
-      EXPECT_EQ(!workspace.engine->holdings().unsymmetric, symmetric);
+      EXPECT_EQ(!workspace.engine->report().unsymmetric, symmetric);
     }
 }
 

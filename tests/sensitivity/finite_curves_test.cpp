@@ -182,7 +182,7 @@ TEST(FiniteCurves, TangentsAreTheComplexStepOfForcesAndRows) {
     History<C> previous;
     for_each_part([](const Vector<double>& part, Vector<C>& out) { out = part.cast<C>(); }, before.history, previous);
     previous.patch = before.history.patch;
-    previous.faces = before.history.faces;
+    previous.faced = before.history.faced;
     const double time = s.trajectory.increments[4].time;
     const auto facing = &at.contact.facing;
     const ContactInput<double> input{model, s.slots, rho, before.history, ConeRadius::augmented, time, facing};

@@ -111,8 +111,10 @@ TEST(ReportDrawing, APageHasItsPartsForNarrowScreens) {
 TEST(ReportDrawing, PgfHasItsTextsAsLatexSetsThem) {
   report::Drawing drawing(200, 100, "title", "description");
   drawing.text(20, 40, "50 % of {a_b}", {report::Anchor::end, 12, "#D55E00"});
+  drawing.text(20, 60, "é, φ and Ω; σ ≤ 2", {});
   drawing.line(0, 0, 200, 100, {"ink", "", 2, {4, 2}});
   const std::string pgf = drawing.pgf();
+  EXPECT_THAT(pgf, HasSubstr("é, \\(\\varphi\\) and \\(\\Omega\\); \\(\\sigma\\) \\(\\leq\\) 2}"));
   EXPECT_THAT(pgf, HasSubstr("\\pgftext[right,base,x=20\\stickslipunit,y=60\\stickslipunit]"));
   EXPECT_THAT(pgf, HasSubstr("50 \\% of \\{a\\_b\\}}"));
   EXPECT_THAT(pgf, HasSubstr("\\definecolor{stickslip}{HTML}{D55E00}"));

@@ -97,4 +97,4 @@ def self_test():
 
 
 said = self_test() if sys.argv[1:] == ["--self-test"] else faults(sys.argv[1])
-sys.exit("\n".join(said))
+sys.exit("\n".join(said) or 0)

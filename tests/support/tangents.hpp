@@ -64,7 +64,7 @@ inline TangentErrors errors_of_tangent(const Model& model, const Slots<double>& 
   History<C> previous;
   for_each_part([](const Vector<double>& part, Vector<C>& out) { out = part.cast<C>(); }, before.history, previous);
   previous.patch = before.history.patch;
-  previous.faces = before.history.faces;
+  previous.faced = before.history.faced;
   RegularisationField<C> complex_rho;
   for (const auto& each : rho) complex_rho.push_back({C(each.normal), C(each.tangential)});
   const ContactInput<C> moved{model,          complex_slots, complex_rho, previous, ConeRadius::augmented,

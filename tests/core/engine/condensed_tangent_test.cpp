@@ -118,9 +118,9 @@ TEST(CondensedTangent, IsUsedAgainCloseToWhereItWasMadeUnlessBodiesRemember) {
     EXPECT_EQ(engine.has_tangent_near({u, before, 1}), !metal);
     EXPECT_EQ(engine.has_tangent_near({near, before, 1}), !metal);
     EXPECT_FALSE(engine.has_tangent_near({far, before, 1}));
-    engine.hold_bodies({far, before, 1}, far, HeldTangent::last);
+    engine.fix_linearisation({far, before, 1}, far, FixedTangent::last);
     ASSERT_TRUE(engine.factorise(pair.problem.tangents(), counters));
-    engine.release_bodies();
+    engine.release_linearisation();
     EXPECT_EQ(counters.factorizations, 1);
     pair.expect_same_solutions();  // (those of the first tangent)
   }
@@ -133,9 +133,9 @@ TEST(CondensedTangent, IsCarriedToTheLastBit) {
   const Matrix<double> r = pair.problem.rows(1), l = Matrix<double>::Ones(pair.problem.model.multiplier_count, 1);
   const auto solve_with_last = [&] {
     Counters counters;
-    engine.hold_bodies({here, before, 1}, here, HeldTangent::last);
+    engine.fix_linearisation({here, before, 1}, here, FixedTangent::last);
     EXPECT_TRUE(engine.factorise(pair.problem.tangents(), counters));
-    engine.release_bodies();
+    engine.release_linearisation();
     EXPECT_EQ(counters.factorizations, 0);
     return engine.solve({r, l});
   };

@@ -31,7 +31,7 @@ struct Pair {
   }
   /// Engine displacement of the engine in full where that of the other is `u`.
   Vector<double> in_full(const Vector<double>& u) {
-    return into_frames(problem.model, problem.slots.frames, Layout::all, mixed.all(u));
+    return into_frames(problem.model, problem.slots.frames, NodalLayout::all, mixed.all(u));
   }
   void expect_same_rows(const Vector<double>& u) {
     ForceScale scale, scale_of_mixed;
@@ -62,11 +62,11 @@ TEST(MixedEngine, HoldsBodiesAsTheEngineInFullDoes) {
     // about another displacement, of which supports prescribe other values too
     Vector<double> about = pair.of_mixed + 1e-3 * derivatives::arbitrary(model.dof_count(), 8);
     const Vector<double> moved = pair.mixed.all(about), moved_of_mixed = pair.mixed.spread(about);
-    pair.mixed.hold_bodies({moved_of_mixed, pair.memory, Pair::time}, pair.of_mixed);
-    pair.full.hold_bodies({moved, pair.memory, Pair::time}, pair.in_full(pair.of_mixed));
+    pair.mixed.fix_linearisation({moved_of_mixed, pair.memory, Pair::time}, pair.of_mixed);
+    pair.full.fix_linearisation({moved, pair.memory, Pair::time}, pair.in_full(pair.of_mixed));
     pair.expect_same_rows(pair.of_mixed);
-    pair.mixed.release_bodies();
-    pair.full.release_bodies();
+    pair.mixed.release_linearisation();
+    pair.full.release_linearisation();
     pair.expect_same_rows(pair.of_mixed);
   }
 }
@@ -118,7 +118,7 @@ TEST(MixedEngine, LeavesOutWhatIsInside) {
   EXPECT_EQ(pair.mixed.unknowns(), mixed_displacements(model) + model.multiplier_count);
   for (int node : model.contact_nodes)
     for (int i = 0; i < 2; ++i) EXPECT_TRUE(pair.mixed.is_free(2 * node + i));
-  EXPECT_GT(pair.mixed.holdings().bodies_factor, 0);
+  EXPECT_GT(pair.mixed.report().bodies_factor, 0);
 }
 
 TEST(MixedEngine, ExpandsWhatIsWantedAsItExpandsAll) {
