@@ -27,6 +27,7 @@ struct Facets {
       : points(std::move(at)), facets(std::move(of)), search(points, facets) {}
   Facets(const Facets&) = delete;
   Vec<double, 2> place(int node) const { return points.col(node).head<2>(); }
+  Points<double> still() const { return Points<double>::Zero(points.rows(), points.cols()); }  ///< displacements
 };
 
 /// Leaves a slave node at a corner of its side the facets that face a master of normal `across`, any length: those
@@ -258,6 +259,15 @@ std::map<int, std::vector<Segment>> segments_of_nodes(const Facets& master, cons
   return of_node;
 }
 
+/// Whether the segments of a point weigh nothing (weight_of_angle()), as they may along the curved sides of quadratic
+/// elements.
+bool all_are_too_steep(const Model& model, const Facets& master, const ContactPoint& point) {
+  constexpr double nothing = 1e-12;
+  ContactPoint unweighed = point;  // without masters no angle is asked for
+  for (Segment& segment : unweighed.segments) segment.master = {Segment::none, Segment::none};
+  return !(area_share(point.segments, unweighed, master.points, master.still(), model.node_count) > nothing);
+}
+
 /// Segment-integrated contact: the multiplier of each slave node on the segments of its facets.
 void pair_segments(Model& model, const Points<double>& points, const Pairing& pairing) {
   const Facets master = facets_of_master(model, points, pairing);
@@ -268,24 +278,20 @@ void pair_segments(Model& model, const Points<double>& points, const Pairing& pa
   if (slides)
     model.surfaces.push_back(integrated_curve(model, points, pairing.index, pairing.obstacle, pairing.master));
   const std::size_t first = model.points.size();
-  const Points<double> still = Points<double>::Zero(master.points.rows(), master.points.cols());
   for (int node : pairing.slave.nodes) {
     if (of_node[node].empty()) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
     point.master = ContactPoint::Master::segments;
     point.surface = curve;
     point.segments = of_node[node];
-    constexpr double nothing = 1e-12;  // (all of what it faces is too steep: weight_of_angle())
-    if (!slides && !master.facets.empty() &&
-        !(area_share(point.segments, point, master.points, still, model.node_count) > nothing))
-      continue;
+    if (!slides && !master.facets.empty() && all_are_too_steep(model, master, point)) continue;
     point.slave_nodes = static_cast<int>(nodes_of_segments(node, point.segments, {}, model.node_count).size());
     point.nodes = nodes_of_segments(node, point.segments, point.segments, model.node_count);
     add_point(model, std::move(point));
   }
   if (!slides) return;
   std::vector<Facing> found(model.points.size());
-  find_segments(model, curve, master.points, still, std::vector<int>(found.size(), no_patch), found);
+  find_segments(model, curve, master.points, master.still(), std::vector<int>(found.size(), no_patch), found);
   for (std::size_t p = first; p < model.points.size(); ++p) {
     model.points[p].facing = found[p];
     model.points[p].nodes = found[p].nodes;

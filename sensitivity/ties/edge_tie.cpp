@@ -185,10 +185,10 @@ void for_each_edge_way(const Model& model, const Slots<Direction>& slots, const 
 
 double edge_margin(const Model& model, const State<double>& state) {
   double least = std::numeric_limits<double>::infinity();
+  if (!model.slides_on_surfaces()) return least;
   for (int p = 0; p < static_cast<int>(model.points.size()); ++p) {
-    if (!model.slides_on_surfaces() || state.contact.state[p] == ContactState::open) continue;
-    if (!is_along_surface(model, state, p)) continue;
-    const Facing& facing = faced_at(model, state, p);
+    if (state.contact.state[p] == ContactState::open || !is_along_surface(model, state, p)) continue;
+    const Facing& facing = state.contact.facing[p];
     const Patch<3>& patch = model.surfaces[model.points[p].surface].patches<3>()[facing.patch];
     for (int k = 0; k < patch.corners && !patch.is_smooth(); ++k)
       if (patch.across[k] != no_patch) least = std::min(least, std::abs(beyond_edge(patch, k, facing.at)));
