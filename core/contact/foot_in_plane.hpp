@@ -2,10 +2,12 @@
 ///
 ///   foot of x: (x - y(xi)) . y'(xi) = 0, measured from a reference on its patch, xi = reference + shift
 ///
-///   Catmull-Rom   uniform cubic through both ends, slope (y_next - y_previous)/2 at each
+///   Catmull-Rom   cubic through both ends, slope (y_next - y_previous) / (1 + q) at each
 ///   B-spline      uniform cubic
 ///
-/// At a free end, and at a corner that is kept, a smooth patch extends its facet straight: y_0 = 2 y_1 - y_2.
+/// q is the length of the longer facet at the vertex over that of the shorter one, at the start, rounded to a whole
+/// number: q = 1 for facets that are about alike. At a free end, and at a corner that is kept, a smooth patch extends
+/// its facet straight: y_0 = 2 y_1 - y_2.
 /// Source of the smoothings: core/README.md.
 #pragma once
 
@@ -50,19 +52,19 @@ PatchWeights<T> patch_weights(const Patch<2>& patch, const T& s) {
     w.slope = {-half * r * r, half * s * (T(3) * s - T(4)), half * (one + s * (T(2) - T(3) * s)), half * s * s};
     w.bend = {r, T(3) * s - T(2), one - T(3) * s, s};
   }
-  for (auto* order : {&w.value, &w.slope, &w.bend}) {  // a missing outer vertex is 2 y_1 - y_2
-    auto& n = *order;
-    if (!patch.goes_on(0)) {
-      n[1] += T(2) * n[0];
-      n[2] -= n[0];
-      n[0] = zero;
+  for (auto* order : {&w.value, &w.slope, &w.bend})
+    for (int end : {0, 1}) {
+      auto& n = *order;
+      const int outer = 3 * end, near = 1 + end, far = 2 - end;
+      if (!patch.goes_on(end)) {  // 2 y_near - y_far stands for the outer vertex
+        n[near] += T(2) * n[outer];
+        n[far] -= n[outer];
+        n[outer] = zero;
+      } else if (patch.slope_factor[end] != 1) {  // y_far + factor (y_outer - y_far)
+        n[far] += T(1 - patch.slope_factor[end]) * n[outer];
+        n[outer] *= T(patch.slope_factor[end]);
+      }
     }
-    if (!patch.goes_on(1)) {
-      n[2] += T(2) * n[3];
-      n[1] -= n[3];
-      n[3] = zero;
-    }
-  }
   return w;
 }
 

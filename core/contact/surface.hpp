@@ -55,6 +55,8 @@ struct Patch<2> {
   /// straight there.
   std::array<int, 4> vertices{{no_vertex, no_vertex, no_vertex, no_vertex}};
   std::array<int, 2> across{{no_patch, no_patch}};
+  /// Per end, of Catmull-Rom: the slope there over that of the uniform spline (slope_factor() in surface.cpp).
+  std::array<double, 2> slope_factor{{1, 1}};
   Smoothing smoothing = Smoothing::none;
   int corner(int k) const { return vertices[1 + k]; }
   bool goes_on(int end) const { return vertices[3 * end] != no_vertex; }

@@ -108,7 +108,8 @@ class NewtonIterations {
       resume_on_cone(task_.contact, unknowns_.multiplier, task_.resumed, at_.field);
     auto branches = branches_here();
     used_ = at_.field.state;
-    tangent_.move_to(unknowns_, at_.field, iteration == 0 && predictions_ == 0);
+    const bool begins = iteration == 0 && predictions_ == 0;
+    tangent_.move_to(unknowns_, at_.field, begins ? Linearise::unless_near : Linearise::always);
     if (!tangent_.factorise(unknowns_, branches)) return NewtonEnd{Status::singular, engine_.message()};
     tell_stability();
     directed_ = at_.field;
@@ -162,7 +163,7 @@ class NewtonIterations {
   Equilibrium<T> result_of(NewtonEnd end) {
     if (end.status == Status::converged && !end.inexact && tangent_.redundant()) end.message = redundant_message;
     if (is_converged(end.status) && task_.tells_stability && !is_linear() && !result_.unstable) {
-      tangent_.move_to(unknowns_, at_.field, true);
+      tangent_.move_to(unknowns_, at_.field, Linearise::unless_near);
       auto branches = branches_here();
       if (tangent_.factorise(unknowns_, branches)) tell_stability();
     }

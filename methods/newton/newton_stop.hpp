@@ -17,7 +17,8 @@ struct NewtonEnd {
 
 /// How the iterations end:
 ///
-///   converged               all residuals within the tolerance, and no state changed since the last tangent
+///   converged               all residuals within the tolerance, and no state changed since the last tangent; or no
+///                           force is left but rounding, as of bodies that move without touching anything
 ///   converged_at_roundoff   residuals stop falling at the level of their own rounding
 ///   stagnated               residuals stop falling above that level, but close to the solution
 ///   cycle                   a set of states is met again, with more than half of its residual left
@@ -85,6 +86,7 @@ class NewtonStop {
     if (rests_ && history.size() == 1) return NewtonEnd{Status::converged_at_roundoff, "nothing but rounding moves it"};
     const auto fell = [&] { return 2 * residuals.largest() <= history[history.size() - 2].residual; };
     if (!repeats_ && (steady_ < 2 || fell())) return std::nullopt;
+    if (residuals.is_forceless()) return NewtonEnd{};
     return NewtonEnd{Status::converged_at_roundoff, "the residual stopped falling at the level of rounding"};
   }
 

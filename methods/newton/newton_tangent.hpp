@@ -122,6 +122,9 @@ class OwnTractions {
 
 }  // namespace detail
 
+/// When the bodies' tangent is taken anew. For a first step the last one is as good where it is near.
+enum class Linearise { always, unless_near };
+
 template <class T>
 class NewtonTangent {
  public:
@@ -131,15 +134,14 @@ class NewtonTangent {
   }
 
   /// Takes the tangent of what depends on the place: of the bodies where it is not constant, what points face, and
-  /// which multipliers are decided elsewhere where normals turn. `begins`: of a first step, for which the last tangent
-  /// of the bodies is as good where it is near.
-  void move_to(const Unknowns<T>& unknowns, const ContactField<T>& field, bool begins) {
+  /// which multipliers are decided elsewhere where normals turn.
+  void move_to(const Unknowns<T>& unknowns, const ContactField<T>& field, Linearise linearise) {
     const auto& [model, slots] = std::tie(task_.contact.model, task_.contact.slots);
     if (!model.effects.linear_bulk) {
       const Stopwatch time(account_.seconds.bodies);
       const Vector<T> moved = engine_.spread(unknowns.u);
       const BodyMotion<T> at{moved, task_.contact.previous.bodies, task_.arc ? unknowns.time : task_.contact.time};
-      if (!begins || !engine_.has_tangent_near(at)) engine_.linearise(at);
+      if (linearise == Linearise::always || !engine_.has_tangent_near(at)) engine_.linearise(at);
     }
     face(field);
   }

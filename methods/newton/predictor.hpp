@@ -53,7 +53,7 @@ bool begin_path(Engine<T>& engine, const EquilibriumTask<T>& task, Evaluator<T>&
                 Account& account, Unknowns<T>& unknowns) {
   auto at = evaluate(unknowns);
   auto branches = detail::step_branches(task.contact, engine.compact(unknowns.u), at.field, unknowns.multiplier, {});
-  tangent.move_to(unknowns, at.field, true);
+  tangent.move_to(unknowns, at.field, Linearise::unless_near);
   if (!tangent.factorise(unknowns, branches)) return false;
   evaluate.take_rows_in(branches, unknowns, at);
   const auto step = tangent.step_along(*task.arc, unknowns, at.rows_u, at.rows_l);
@@ -85,7 +85,7 @@ bool predict(Engine<T>& engine, const EquilibriumTask<T>& task, Evaluator<T>& ev
   if (!task.resumed.empty()) detail::resume_on_cone(task.contact, start.multiplier, task.resumed, at.field);
   auto branches = detail::step_branches(task.contact, engine.compact(start.u), at.field, start.multiplier, {});
   detail::follow_obstacles(model, *task.last, task.resumed, branches);
-  tangent.move_to(start, at.field, true);
+  tangent.move_to(start, at.field, Linearise::unless_near);
   if (!tangent.factorise(start, branches)) return false;
   evaluate.take_rows_in(branches, start, at);
   const Vector<T> motion = engine.spread(prescribed);

@@ -29,6 +29,7 @@ struct Line {
 struct Patch {
   std::array<int, 4> vertex;             ///< nodes, or points of an obstacle's polyline
   std::array<int, 2> beside = {-1, -1};  ///< the patches before and behind it; -1: a free end
+  std::array<double, 2> slope = {1, 1};  ///< Catmull-Rom: factors of (y_next - y_previous) / 2 at both ends
   double length = 0, arc = -1;           ///< of the start; along the master to its beginning
   /// Whether it goes on smoothly, into the patch before or behind it.
   bool goes_on(bool end) const { return end ? vertex[3] != vertex[2] : vertex[0] != vertex[1]; }
@@ -217,10 +218,13 @@ class Master {
       if (!starts.contains(patch.vertex[2])) continue;
       Patch& other = patches[patch.beside[1] = starts[patch.vertex[2]]];
       other.beside[0] = p;
-      const double cosine = line_of(p).tau.normalized().dot(line_of(patch.beside[1]).tau.normalized());
-      if (smooth == 0 || cosine < std::cos(corner * std::numbers::pi / 180)) continue;
+      const Vec3 tau = line_of(p).tau, next = line_of(patch.beside[1]).tau;
+      if (smooth == 0 || tau.normalized().dot(next.normalized()) < std::cos(corner * std::numbers::pi / 180)) continue;
       patch.vertex[3] = other.vertex[2];
       other.vertex[0] = patch.vertex[1];
+      if (smooth == 2) continue;
+      const double ratio = tau.norm() / next.norm(), whole = std::floor(std::max(ratio, 1 / ratio) + 0.381966011250105);
+      patch.slope[1] = other.slope[0] = 2 / (1 + whole);
     }
   }
 
@@ -264,11 +268,13 @@ class Master {
     const double s = place.xi;
     const Eigen::Vector4d powers[3] = {{1, s, s * s, s * s * s}, {0, 1, 2 * s, 3 * s * s}, {0, 0, 2, 6 * s}};
     Eigen::Vector4d N = shapes[smooth].transpose() * powers[derivative];
-    for (const auto& [end, near, far] : {std::array{0, 1, 2}, {3, 2, 1}}) {  // a vertex that is missing is 2 y_1 - y_2
-      if (patches[place.patch].goes_on(end == 3)) continue;
-      N[near] += 2 * N[end];
-      N[far] -= N[end];
-      N[end] = 0;
+    const Patch& patch = patches[place.patch];
+    for (const auto& [end, near, far] : {std::array{0, 1, 2}, {3, 2, 1}}) {
+      const bool goes_on = patch.goes_on(end == 3);  // else 2 y_near - y_far stands for the outer vertex
+      const double slope = patch.slope[end == 3];    // y_far + slope (y_end - y_far)
+      N[near] += goes_on ? 0 : 2 * N[end];
+      N[far] += (goes_on ? 1 - slope : -1) * N[end];
+      N[end] *= goes_on ? slope : 0;
     }
     return N;
   }

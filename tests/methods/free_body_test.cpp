@@ -119,5 +119,22 @@ TEST(ContactThatClosesWithoutForce, LeavesBodiesWhereTheyAreAndPressesThemLater)
         }
 }
 
+TEST(BodyThatMovesAndTouchesNothing, IsConverged) {  // all of its forces are rounding, and they stop falling
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{1, 4}};
+  s.bodies = {scenes::box_body("pad", {-1.6, 0}, {-0.4, 0.8}, {12, 4})};
+  s.bodies[0].material = NeoHookean{1000, 0.3, NeoHookean::Volumetric::log};
+  s.obstacles = {{"floor", Plane{{0.0, -0.1}, {0.0, 1.0}}}};
+  s.contacts = {contact("c", "pad.bottom", "floor")};
+  s.supports = {scenes::support("pad.top", {{'x', scenes::ramp(0.0)}, {'y', scenes::ramp(-0.15)}})};
+  for (const auto& method : {Method(MonolithicAL{}), Method(UzawaAL{}), Method(Penalty{})}) {
+    const auto r = run(s, method);
+    ASSERT_EQ(r.trajectory.increments.size(), 4u) << name_of(method) << r.trajectory.message;
+    for (const auto& increment : r.trajectory.increments)
+      EXPECT_EQ(increment.status, Status::converged) << name_of(method) << increment.time << increment.message;
+  }
+}
+
 }  // namespace
 }  // namespace stickslip::free_body_test

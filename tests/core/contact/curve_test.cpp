@@ -93,6 +93,55 @@ TEST(Curve, ApproachesACircleByTheOrderOfItsKind) {
     EXPECT_NEAR(std::log2(farthest(16, kind) / farthest(32, kind)), order, 0.1);
 }
 
+/// Vertices on the unit circle whose facets are long and short in turns, their angles in that ratio.
+Ring uneven_ring(int pairs, double ratio) {
+  Ring ring(2 * pairs);
+  const double both = 2 * std::numbers::pi / pairs;
+  for (int k = 0; k < pairs; ++k)
+    for (int end : {0, 1}) {
+      const double angle = both * (k + end * ratio / (1 + ratio));
+      ring.places.col(2 * k + end) = Place(std::cos(angle), std::sin(angle));
+    }
+  return ring;
+}
+
+TEST(Curve, OfUnevenFacetsNeitherFoldsNorTurnsAtVertices) {
+  for (const double ratio : {1.0, 1.5, 2.0, 3.0, 10.0, 100.0}) {
+    const Ring ring = uneven_ring(24, ratio);
+    const auto patches = ring.patches(Smoothing::catmull_rom);
+    for (const Patch<2>& patch : patches) {
+      const auto slope = [&](const Patch<2>& of, double xi) {
+        return detail::on_patch<double>(of, detail::patch_weights<double>(of, xi).slope, ring.where());
+      };
+      const Place chord = ring.places.col(patch.corner(1)) - ring.places.col(patch.corner(0));
+      // along the chord the ends have at most (1 + 1.62) / 2 of it, so the middle has 1.5 - 1.31 / 2; no end goes back
+      for (int k = 0; k <= 20; ++k) EXPECT_GT(slope(patch, 0.05 * k).dot(chord), 0) << ratio;
+      EXPECT_GT(slope(patch, 0.5).dot(chord), 0.75 * chord.squaredNorm()) << ratio;
+      const Place before = slope(patch, 1).normalized(), after = slope(patches[patch.across[1]], 0).normalized();
+      EXPECT_LE((before - after).norm(), 1e-14) << ratio;
+      // at a vertex it is along the chord between the neighbours
+      const auto& next = patches[patch.across[1]];
+      const Place across = ring.places.col(next.corner(1)) - ring.places.col(patch.corner(0));
+      EXPECT_LE((before - across.normalized()).norm(), 1e-14) << ratio;
+    }
+  }
+}
+
+TEST(Curve, OfAShortRampBetweenLongFlatsGoesUpSteadily) {
+  Eigen::Matrix2Xd profile(2, 4);
+  profile << 4, 1.7, 1.2, -3, 0.06, 0.06, 0, 0;  // from right to left, the solid below
+  const auto where = [&](int v) -> Place { return profile.col(v); };
+  for (const Patch<2>& patch : make_surface<2>({{0, 1}, {1, 2}, {2, 3}}, Smoothing::catmull_rom, 30, profile))
+    for (int k = 0; k <= 50; ++k) {
+      const Place at = curve_position<double>(patch, 0.02 * k, where);
+      const auto w = detail::patch_weights<double>(patch, 0.02 * k);
+      EXPECT_LT(detail::on_patch<double>(patch, w.slope, where)[0], 0);
+      // flats are left by 4/27 of the slope's length, .56 at most, times its angle to them, .022 at most
+      EXPECT_GT(at[1], -0.00183);
+      EXPECT_LT(at[1], 0.06183);
+    }
+}
+
 TEST(Curve, GoesStraightAtFreeEndsAndKeepsCorners) {
   Eigen::Matrix2Xd square(2, 8);
   square << 0, 1, 2, 2, 2, 1, 0, 0, 0, 0, 0, 1, 2, 2, 2, 1;
