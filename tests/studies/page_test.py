@@ -30,14 +30,19 @@ CHARTS = """
   for (const figure of figures) { figure.scrollIntoView(); await until(() => drawn(figure).length && !plain(figure)); }
   const covered = [], words = [];
   for (const svg of all('.vega svg.marks')) {
-    const texts = all('g.mark-text.role-mark text', svg).filter(
-        (text) => text.textContent && text.getAttribute('opacity') !== '0');
-    const boxes = texts.map(seen), air = 3;  // between lines
+    const visible = (mark) => all(`g.mark-${mark}.role-mark > *`, svg).filter((e) => e.getAttribute('opacity') !== '0');
+    const texts = visible('text').filter((text) => text.textContent), boxes = texts.map(seen);
+    const air = 3, pixel = 1;  // between lines of words; what Vega places words by
+    const ink = [...visible('line'), ...visible('symbol')].flatMap((path) => Array.from(
+        {length: path.getTotalLength()}, (_, i) => path.getPointAtLength(i).matrixTransform(path.getScreenCTM())));
     words.push(...texts.map((text) => text.textContent));
-    boxes.forEach((a, i) => boxes.slice(0, i).forEach((b, j) => {
-      if (a.left < b.right && b.left < a.right && a.top + air < b.bottom && b.top + air < a.bottom)
-        covered.push([texts[i].textContent, texts[j].textContent]);
-    }));
+    boxes.forEach((a, i) => {
+      const meets = (b) => a.left < b.right && b.left < a.right && a.top + air < b.bottom && b.top + air < a.bottom;
+      const holds = ({x, y}) => a.left + pixel < x && x < a.right - pixel && a.top + air < y && y < a.bottom - air;
+      const under = boxes.slice(0, i).flatMap((b, j) => meets(b) ? [texts[j].textContent] : []);
+      if (ink.some(holds)) under.push('a curve or a marker');
+      if (under.length > 0) covered.push([texts[i].textContent, ...under]);
+    });
   }
   const labels = all('g.role-axis-label text');
   return {figures: figures.length, bare: figures.filter((figure) => !drawn(figure).length || plain(figure)).length, words,
@@ -51,8 +56,11 @@ PLACE_OF_A_POINT = """
   const at = seen(points()[0]);
   return {x: at.left + at.width / 2, y: at.top + at.height / 2};
 """
-TOOLTIP = "await until(() => document.querySelector('#vg-tooltip-element.visible'));" \
-          "return document.querySelector('#vg-tooltip-element').textContent;"
+TOOLTIP = """
+  await until(() => document.querySelector('#vg-tooltip-element.visible'));
+  const tip = document.getElementById('vg-tooltip-element'), {left, top, right, bottom} = seen(tip);
+  return {words: tip.textContent, inside: left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight};
+"""
 LEGEND = """
   const button = () => chart.querySelector('.legend button'), before = points().length;
   button().click();
@@ -96,6 +104,7 @@ CONTRASTS = """
   };
   const colors = (selector, what) => all(selector).map((element) => getComputedStyle(element)[what]);
   return [...new Set([...colors('.legend button svg', 'stroke'), ...colors('.plate svg path[style*="light-dark"]', 'stroke'),
+                      ...colors('.vega g.mark-line.role-mark path', 'stroke'),
                       ...colors('g.mark-text.role-mark text[fill]', 'fill')])].map((color) => [color, contrast(color)]);
 """
 FOR_A_PAPER = """
@@ -186,17 +195,17 @@ def check(name, holds, found):
         sys.exit(f"{name}: {json.dumps(found)[:3000]}")
 
 
-def check_charts(name, found):
-    check(name, found["figures"] >= 4 and found["bare"] == 0, found)
+def check_charts(name, found, least=4):
+    check(name, found["figures"] >= least and found["bare"] == 0, found)
     check(f"{name}: words cover each other", not found["covered"], found)
     check(f"{name}: wider than the window", found["beyond"] <= 0, found)
     check(f"{name}: numbers of axes", not [text for text in found["numbers"] if "+" in text or "\u2212" in text], found)
     check(f"{name}: colours", found["paint"] == found["ink"], found)
 
 
-def check_contrasts(scheme, found):
+def check_contrasts(scheme, found, least=6):
     """Curves and their words stand out from the paper by 3, which WCAG asks of graphics."""
-    check(f"{scheme}: curves", len(found) > 5, found)
+    check(f"{scheme}: curves", len(found) >= least, found)
     check(f"{scheme}: contrast", all(contrast >= 3 for _, contrast in found), found)
 
 
@@ -222,17 +231,23 @@ def check_paper(found):
     check("SVG", 'width="170mm"' in found["svg"] and "role-legend" in found["svg"] and "Uzawa AL" in found["svg"], found["svg"])
 
 
+def check_pointer(browser):
+    """A point says what it is, and a name in the legend takes its curve away and puts it back."""
+    browser.ask("Input.dispatchMouseEvent", type="mouseMoved", **browser.run(PLACE_OF_A_POINT))
+    tip = browser.run(TOOLTIP)
+    check("hover", tip["inside"] and "Penalty" in tip["words"] and "method" in tip["words"] and
+          "factorisations" not in tip["words"], tip)
+    legend = browser.run(LEGEND)
+    check("legend", legend == {"less": True, "pressed": "false", "again": True}, legend)
+
+
 def check_page(browser):
     browser.open(1200)
     wide = browser.run(CHARTS)
     check_charts("charts", wide)
     check("words at the ends of lines", {"1e-8", "exactly 0"} <= set(wide["words"]) and
           any(words.startswith("Uzawa AL scale=") for words in wide["words"]), wide)
-    browser.ask("Input.dispatchMouseEvent", type="mouseMoved", **browser.run(PLACE_OF_A_POINT))
-    tooltip = browser.run(TOOLTIP)
-    check("hover", "method" in tooltip and "factorisations" not in tooltip and "Penalty" in tooltip, tooltip)
-    legend = browser.run(LEGEND)
-    check("legend", legend == {"less": True, "pressed": "false", "again": True}, legend)
+    check_pointer(browser)
     choice = browser.run(CHOICE)
     check("choice", all(choice.values()), choice)
     paper = browser.run(BEFORE_PAPER)
@@ -242,6 +257,7 @@ def check_page(browser):
     check_contrasts("light", browser.run(CONTRASTS))
     browser.open(390)
     check_charts("a phone", browser.run(CHARTS))
+    check_pointer(browser)
     browser.open(1200, "dark")
     dark = browser.run(CHARTS)
     check_charts("dark", dark)
@@ -251,10 +267,14 @@ def check_page(browser):
 
 def check_steps(browser):
     """The slider of a run shows one step at a time, with its tractions."""
-    browser.open(1200)
-    found = browser.run(STEPS)
-    check("steps", found["first"] != found["last"] and found["words"].startswith("step 2, t = 1: ") and
-          found["shown"] == [2], found)
+    for width, scheme in ((1200, "light"), (1200, "dark"), (390, "light"), (390, "dark")):
+        browser.open(width, scheme)
+        name = f"a run of {width} pixels, {scheme}"
+        check_charts(name, browser.run(CHARTS), 1)
+        check_contrasts(name, browser.run(CONTRASTS), 1)
+        found = browser.run(STEPS)
+        check(name, found["first"] != found["last"] and found["words"].startswith("step 2, t = 1: ") and
+              found["shown"] == [2], found)
 
 
 def run_with_steps(program, source, folder):
