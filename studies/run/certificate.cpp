@@ -219,6 +219,9 @@ verify::Certificate certificate_of_peer(const json& own, json solution) {
 verify::Certificate certificate_of(const fs::path& directory, const std::string& solution) {
   return of_files(directory.string(), [&] {
     const json result = parsed_file(directory / "result.json");
+    if (!result.contains("solution"))
+      throw InputFault((directory / "solution.json").string() +
+                       ": is not there, as of results of earlier versions; run the scene again");
     const json left_out = result.value("solution", json::object()).value("left_out", json());
     if (left_out.is_string())
       throw InputFault((directory / "solution.json").string() + ": was left out: " + left_out.get<std::string>());

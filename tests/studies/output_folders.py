@@ -273,12 +273,47 @@ def two_at_once(work):
     print("two at once", flush=True)
 
 
+def earlier_versions(work):
+    """Results of 0.1.0 are read; in their folders, which have no list of files, nothing is replaced."""
+    for name in ("earlier_run", "earlier_study"):
+        shutil.copytree(SOURCE / "tests" / "studies" / name, work / name)
+    methods = [{"penalty": {"stiffness": [100, 1e4]}}, {"monolithic_al": {}}]
+    study = work / "stop_bars.study.json"
+    study.write_text(json.dumps({"scene": str(SCENES / "stop_bars.json"), "methods": methods,
+                                 "reference": [{"method": {"monolithic_al": {}}}]}))
+    refused(work / "earlier_study", "study", study, "-o", work / "earlier_study", "--resume",
+            names=["study.json", "results.jsonl"])
+    refused(work / "earlier_run", "run", work / "slider.json", "-o", work / "earlier_run", names=["result.json"])
+    run("verify", work / "earlier_run", code=2, says="as of results of earlier versions; run the scene again")
+    run("study", study, "-o", work / "now")
+    run("compare", work / "earlier_study", work / "now", code=0)
+    run("merge", work / "earlier_study", "-o", work / "joined", code=3, says="2 row(s) without a checksum were dropped")
+    run("merge", work / "now", work / "earlier_study", "-o", work / "both", code=2, says="run all shards with one version")
+    for name in ("earlier_run", "earlier_study"):
+        run("report", work / name)
+    print("results of earlier versions are read", flush=True)
+
+
+def without_other_programs(work):
+    """A report as PDF asks for the program that makes it, before anything is written."""
+    folder, empty = work / "no_pdf", work / "empty"
+    empty.mkdir()
+    run("run", work / "slider.json", "-o", folder)
+    before = content(folder)
+    run("report", folder, "--pdf", code=2, env={**os.environ, "PATH": str(empty)},
+        says="rsvg-convert makes the PDFs, and is not here; install it (Debian: apt install librsvg2-bin)")
+    if content(folder) != before:
+        sys.exit(f"without rsvg-convert: {content(folder).keys() ^ before.keys()}")
+    print("a program that is missing is named", flush=True)
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         for name in ("slider.json", "stop.json", "stop.study.json"):
             shutil.copy(SCENES / name, work)
-        for check in (files_of_others, inputs, edited_and_linked, limits, streams, address_space, crash, two_at_once):
+        for check in (files_of_others, inputs, edited_and_linked, limits, streams, address_space, crash, two_at_once,
+                      earlier_versions, without_other_programs):
             check(work)
 
 

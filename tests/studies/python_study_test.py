@@ -176,6 +176,11 @@ class Studies(InFolder):
             self.assertEqual(len(stickslip.load_study(self.out)), 7)
         self.assertIn("line 1 is no row", str(caught[0].message))
 
+    def test_rows_of_an_earlier_version_are_loaded(self):
+        rows = without_pandas(lambda: stickslip.load_study(pathlib.Path(__file__).with_name("earlier_study")))
+        self.assertEqual([row["label"] for row in rows], ["Penalty stiffness=100", "Monolithic AL"])
+        self.assertEqual([row["response:hold"] for row in rows], [-10.004995004995001, -9.99999999999999])
+
     def test_faults_of_the_study_have_their_lines_and_nothing_is_written(self):
         self.file.write_text('{"scene": "stop.json",\n "methods": [{"penalty": {"stifness": [1]}}]}')
         with self.assertRaises(stickslip.InputError) as caught:

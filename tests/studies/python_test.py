@@ -436,7 +436,11 @@ class Surroundings(unittest.TestCase):
             (pathlib.Path(folder) / "solution.json").unlink()
             read = stickslip.load_run(folder)
             self.assertEqual(dict(read.parameters), dict(ran.parameters))
-            self.assertRaisesRegex(ValueError, "there is no solution.json", read.displacement)
+        read = stickslip.load_run(pathlib.Path(__file__).with_name("earlier_run"))  # of 0.1.0
+        self.assertEqual((read.title, read.status, read.responses["hold"].tolist()),
+                         ("an earlier run", "converged", [-9.99999999999999]))
+        self.assertEqual(read.jacobian("press").tolist(), [[-0.010000000000000009, 1, -1000.0000000000053]])
+        self.assertRaisesRegex(ValueError, "there is no solution.json", read.displacement)
         with tempfile.TemporaryDirectory() as folder:
             self.assertRaisesRegex(stickslip.InputError, "there is no result.json", stickslip.load_run, folder)
 

@@ -58,6 +58,14 @@ TEST_F(ReportOfARun, HasPictureHistoriesStatesAndValues) {
   EXPECT_TRUE(fs::exists(directory_ / "figures" / "response-histories.csv"));
 }
 
+/// As 0.1.0 wrote it: no ledger, parameters, picture or certificate; warnings are texts.
+TEST_F(ReportOfARun, OpensWhatAnEarlierVersionWrote) {
+  fs::copy(STICKSLIP_SOURCE_DIR "/tests/studies/earlier_run", directory_);
+  EXPECT_THAT(written(), AllOf(HasSubstr("<h1>an earlier run</h1>"), HasSubstr("Monolithic AL, 1 step: converged with"),
+                               HasSubstr("Warning (of an earlier version): the mesh is coarse; run it again."),
+                               HasSubstr("0.1.0"), HasSubstr("d / d g0</th>"), HasSubstr("id=\"histories\"")));
+}
+
 /// A slider over the steps whose fields were kept, the last of them first.
 TEST_F(ReportOfARun, HasASliderOverTheStepsThatWereKept) {
   const auto document = cases::load(cases::shipped / "ironing.json");

@@ -367,7 +367,8 @@ def _state_of(document: Dict[str, Any], solution: Optional[Dict[str, Any]], text
     """What a Result is made of, from the files of a run."""
     steps = document["steps"]
     times = np.array([step["time"] for step in steps])
-    parameters = document.get("parameters") or {}
+    slopes = next((by for step in steps for by in step.get("sensitivities", {}).values()), {})
+    parameters = document.get("parameters", dict.fromkeys(slopes, np.nan))  # 0.1.0 did not write their values
     order = document.get("parameter_order", list(parameters))
     names = list((steps[0].get("responses") or steps[0]["iterate"]["responses"]) if steps else [])
 
