@@ -21,6 +21,7 @@
 
 STICKSLIP_EMBED(page_html, STICKSLIP_REPORT_DIR "/page.html")
 STICKSLIP_EMBED(page_css, STICKSLIP_REPORT_DIR "/page.css")
+STICKSLIP_EMBED(numerals_js, STICKSLIP_REPORT_DIR "/numerals.js")
 STICKSLIP_EMBED(page_js, STICKSLIP_REPORT_DIR "/page.js")
 STICKSLIP_EMBED(vega_js, STICKSLIP_VEGA_DIR "/vega.min.js")
 STICKSLIP_EMBED(vega_lite_js, STICKSLIP_VEGA_DIR "/vega-lite.min.js")

@@ -7,6 +7,7 @@ namespace stickslip::report::embedded {
 
 std::string_view page_html();
 std::string_view page_css();
+std::string_view numerals_js();
 std::string_view page_js();
 std::string_view vega_js();
 std::string_view vega_lite_js();

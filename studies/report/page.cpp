@@ -41,6 +41,7 @@ std::string page(const std::string& title, const std::string& first, const std::
                                       {"vega", embed_script(embedded::vega_js())},
                                       {"vega_lite", embed_script(embedded::vega_lite_js())},
                                       {"vega_embed", embed_script(embedded::vega_embed_js())},
+                                      {"numerals", embed_script(embedded::numerals_js())},
                                       {"js", embed_script(embedded::page_js())}});
 }
 

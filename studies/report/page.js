@@ -17,15 +17,7 @@
     return rows.filter((row) => tests.every((test) => test(row)));
   }
 
-  /** A number as everywhere on the page: a power of ten below 0.001 and from 10000 on. */
-  function numeral(x) {
-    if (x === 0 || (Math.abs(x) >= 1e-3 && Math.abs(x) < 1e4)) return String(+x.toPrecision(6));
-    return Number.isInteger(x) && Math.abs(x) < 1e7 && x % 1000 ? String(x) :
-        x.toExponential(5).replace(/\.?0*e\+?/, 'e');
-  }
-  /** A numeral with its power of ten as one writes it: "2·10⁻⁴" of "2e-4". */
-  const powered = (text) => text.replace(/^(-?)(1?)(.*)e(-?)(\d+)$/, (all, sign, one, rest, minus, digits) =>
-      sign + (one && !rest ? '' : one + rest + '·') + '10' + (minus && '⁻') + [...digits].map((d) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[d]).join(''));
+  const {numeral, powered} = Numerals;
   vega.expressionFunction('powered', (x) => powered(numeral(x)));
   const shown = (value) => typeof value === 'number' ? numeral(value) : String(value ?? '');
 

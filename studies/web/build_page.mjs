@@ -40,7 +40,7 @@ const parts = {
   'scenes': json(JSON.stringify(scenes)),
   'about': json(JSON.stringify(about)),
   'notices': inside(notices),
-  'scripts': inside(scripts.map((name) => read(web, name)).join('\n')),
+  'scripts': inside([read(source, 'studies/report/numerals.js'), ...scripts.map((name) => read(web, name))].join('\n')),
   'vega': inside(read(vega, 'vega.min.js') + '\n' + read(vega, 'vega-lite.min.js')),
 };
 writeFileSync(page, read(web, 'page.html').replace(/\{\{([\w.]+)\}\}/g, (all, name) => parts[name]));

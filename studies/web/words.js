@@ -13,16 +13,9 @@ const Words = (() => {
     return [words[key].slice(0, cut), words[key].slice(cut + 2)];
   };
 
-  /** A number: a power of ten below 0.001 and from 10000 on, as in the report. */
-  function numeral(x, digits = 6) {
-    if (!Number.isFinite(x)) return say('no-number');
-    if (Number.isInteger(x) && Math.abs(x) < 1e7 && digits >= 6) return String(x).replace('-', '−');
-    if (x === 0 || (Math.abs(x) >= 1e-3 && Math.abs(x) < 1e4)) return String(+x.toPrecision(digits)).replace('-', '−');
-    const [mantissa, power] = x.toExponential(digits - 1).split('e');
-    const factor = String(+mantissa).replace('-', '−');
-    const raised = [...power.replace('+', '')].map((c) => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]).join('');
-    return (factor === '1' ? '' : factor === '−1' ? '−' : factor + '·') + '10' + raised;
-  }
+  /** A number as in the report, with the sign of a formula. */
+  const numeral = (x, digits) =>
+      Number.isFinite(x) ? Numerals.powered(Numerals.numeral(x, digits)).replace('-', '−') : say('no-number');
 
   /** Puts words where the page asks for them. */
   function fill(within = document) {

@@ -117,6 +117,7 @@ FOR_A_PAPER = """
   await until(() => saved.length > 1);
   return {code, wide: place.querySelector('pre').textContent, svg: await saved[0].text()};
 """
+NUMERALS = "return %s.map(([x, digits]) => [x, digits, Numerals.powered(Numerals.numeral(x, digits))]);"
 STEPS = """
   const slider = document.querySelector('.slider input'), steps = all('.step'),
       tractions = document.getElementById('step-tractions');
@@ -241,8 +242,17 @@ def check_pointer(browser):
     check("legend", legend == {"less": True, "pressed": "false", "again": True}, legend)
 
 
+def check_numerals(browser):
+    """Numbers are those of the pages' parts that the program writes; whole ones keep their digits, but thousands."""
+    wanted = json.loads(pathlib.Path(__file__).with_name("numerals.json").read_text(encoding="utf-8"))
+    wanted += [[123456, 6, "123456"], [20000, 6, "2·10⁴"]]
+    found = browser.run(NUMERALS % json.dumps(wanted))
+    check("numerals", found == wanted, [pair for pair in zip(found, wanted) if pair[0] != pair[1]])
+
+
 def check_page(browser):
     browser.open(1200)
+    check_numerals(browser)
     wide = browser.run(CHARTS)
     check_charts("charts", wide)
     check("words at the ends of lines", {"1e-8", "exactly 0"} <= set(wide["words"]) and
