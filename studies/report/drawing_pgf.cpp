@@ -102,62 +102,65 @@ std::string tex_text(const std::string& text) {
   return out;
 }
 
-/// The items as commands of PGF's basic layer, y up. A pixel is \\stickslipunit.
+/// Short names for what a drawing repeats, of PGF's basic layer: with them a figure has a third of the bytes.
+constexpr std::string_view short_names = R"(\ifx\stickslipunit\undefined\newdimen\stickslipunit\fi%
+\def\sP#1#2{\pgfpoint{#1\stickslipunit}{#2\stickslipunit}}%
+\def\sM#1#2{\pgfpathmoveto{\sP{#1}{#2}}}%
+\def\sL#1#2{\pgfpathlineto{\sP{#1}{#2}}}%
+\def\sC#1#2#3#4#5#6{\pgfpathcurveto{\sP{#1}{#2}}{\sP{#3}{#4}}{\sP{#5}{#6}}}%
+\def\sZ{\pgfpathclose}%
+\def\sB{\begin{pgfscope}}%
+\def\sE{\end{pgfscope}}%
+\def\sH#1{\definecolor{stickslip}{HTML}{#1}}%
+\def\sF#1{\sH{#1}\pgfsetfillcolor{stickslip}}%
+\def\sS#1#2{\sH{#1}\pgfsetstrokecolor{stickslip}\pgfsetlinewidth{#2\stickslipunit}}%
+\def\sT#1#2#3#4#5#6{\sB\sH{#1}\color{stickslip}\pgftext[x=#3\stickslipunit,y=#4\stickslipunit,#2base]%
+{\fontsize{#5\stickslipunit}{#5\stickslipunit}\selectfont #6}\sE}%
+)";
+
+/// The items by these names, y up. A pixel is \\stickslipunit.
 class Drawing::PgfWriter {
  public:
   explicit PgfWriter(double height) : height_(height) {}
 
   std::string operator()(const Shape& shape) const {
     const auto& style = shape.style;
-    std::string out = "\\begin{pgfscope}" + path(shape.path);
-    if (!style.fill.empty()) out += color("fill", style.fill);
+    std::string out = "\\sB" + path(shape.path);
+    if (!style.fill.empty()) out += "\\sF{" + color(style.fill) + "}";
     if (!style.stroke.empty()) {
-      out += color("stroke", style.stroke) + "\\pgfsetlinewidth{" + length(style.width) + "}";
+      out += "\\sS{" + color(style.stroke) + "}{" + short_number(style.width) + "}";
       std::string dash;
-      for (const double d : style.dash) dash += "{" + length(d) + "}";
+      for (const double d : style.dash) dash += "{" + short_number(d) + "\\stickslipunit}";
       if (!dash.empty()) out += "\\pgfsetdash{" + dash + "}{0pt}";
     }
     const char* const use = style.fill.empty() ? "stroke" : style.stroke.empty() ? "fill" : "fill,stroke";
-    return out + "\\pgfusepath{" + use + "}\\end{pgfscope}%\n";
+    return out + "\\pgfusepath{" + use + "}\\sE%\n";
   }
 
   std::string operator()(const Text& item) const {
     const auto& style = item.style;
     const char* const anchor = style.anchor == Anchor::start ? "left," : style.anchor == Anchor::end ? "right," : "";
-    const std::string size = length(style.size), skip = length(1.2 * style.size);
-    return fmt::format(
-        "\\begin{{pgfscope}}{}\\pgftext[{}base,x={},y={}{}]{{\\fontsize{{{}}}{{{}}}\\selectfont{} "
-        "{}}}\\end{{pgfscope}}%\n",
-        color("text", style.color), anchor, length(item.x), length(height_ - item.y), style.upwards ? ",rotate=90" : "",
-        size, skip, style.bold ? "\\bfseries" : "", tex_text(item.text));
+    return fmt::format("\\sT{{{}}}{{{}{}}}{}{{{}}}{{{}{}}}%\n", color(style.color), style.upwards ? "rotate=90," : "",
+                       anchor, place(item.x, item.y), short_number(style.size), style.bold ? "\\bfseries " : "",
+                       tex_text(item.text));
   }
 
-  std::string operator()(const Clip& clip) const {
-    return "\\begin{pgfscope}" + path(clip.path) + "\\pgfusepath{clip}%\n";
-  }
+  std::string operator()(const Clip& clip) const { return "\\sB" + path(clip.path) + "\\pgfusepath{clip}%\n"; }
 
-  std::string operator()(const Unclip&) const { return "\\end{pgfscope}%\n"; }
-
-  static std::string length(double pixels) { return short_number(pixels) + "\\stickslipunit"; }
+  std::string operator()(const Unclip&) const { return "\\sE%\n"; }
 
  private:
   double height_;
 
-  static std::string color(const char* of, const std::string& name) {
-    const std::string define = "\\definecolor{stickslip}{HTML}{" + in_light(name).substr(1) + "}";
-    return define +
-           (std::string(of) == "text" ? "\\color{stickslip}" : fmt::format("\\pgfset{}color{{stickslip}}", of));
-  }
+  static std::string color(const std::string& name) { return in_light(name).substr(1); }
+
+  std::string place(double x, double y) const { return "{" + short_number(x) + "}{" + short_number(height_ - y) + "}"; }
 
   std::string path(const Path& path) const {
     std::string out;
     for (const auto& piece : path.pieces) {
-      out += piece.kind == 'M'   ? "\\pgfpathmoveto"
-             : piece.kind == 'L' ? "\\pgfpathlineto"
-             : piece.kind == 'C' ? "\\pgfpathcurveto"
-                                 : "\\pgfpathclose";
-      for (std::size_t i = 0; i + 1 < piece.at.size(); i += 2)
-        out += "{\\pgfpoint{" + length(piece.at[i]) + "}{" + length(height_ - piece.at[i + 1]) + "}}";
+      out += std::string("\\s") + piece.kind;
+      for (std::size_t i = 0; i + 1 < piece.at.size(); i += 2) out += place(piece.at[i], piece.at[i + 1]);
       out += "%\n";
     }
     return out;
@@ -165,9 +168,11 @@ class Drawing::PgfWriter {
 };
 
 std::string Drawing::pgf_picture() const {
-  std::string out = fmt::format("\\stickslipunit=\\linewidth\\divide\\stickslipunit by {:.0f}%\n", width_);
-  out += "\\begin{pgfpicture}%\n\\pgfpathrectangle{\\pgfpointorigin}{\\pgfpoint{" + PgfWriter::length(width_) + "}{" +
-         PgfWriter::length(height_) + "}}\\pgfusepath{use as bounding box}%\n\\pgfsetroundjoin%\n";
+  std::string out = fmt::format(
+      "\\stickslipunit=\\linewidth\\divide\\stickslipunit by {:.0f}%\n\\begin{{pgfpicture}}%\n"
+      "\\pgfpathrectangle{{\\pgfpointorigin}}{{\\sP{{{}}}{{{}}}}}\\pgfusepath{{use as bounding box}}%\n"
+      "\\pgfsetroundjoin%\n",
+      width_, short_number(width_), short_number(height_));
   PgfWriter write(height_);
   for (const auto& item : items_) out += std::visit(write, item);
   return out + "\\end{pgfpicture}%\n";
@@ -178,8 +183,8 @@ std::string Drawing::pgf(const Drawing* narrow) const {
       narrow ? "\\ifdim\\linewidth<120mm%\n" + narrow->pgf_picture() + "\\else%\n" + pgf_picture() + "\\fi%\n"
              : pgf_picture();
   return "% \\usepackage{pgf} and \\input this file: as wide as \\linewidth, texts in the font of the document.\n"
-         "\\begingroup%\n\\ifx\\stickslipunit\\undefined\\newdimen\\stickslipunit\\fi%\n" +
-         layouts + "\\endgroup%\n";
+         "\\begingroup%\n" +
+         std::string(short_names) + layouts + "\\endgroup%\n";
 }
 
 std::size_t Drawing::pieces() const {

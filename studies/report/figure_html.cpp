@@ -60,15 +60,21 @@ json rounded(const json& value) {
                                  : value;
 }
 
-/// Rows in a sixth of the bytes: as arrays under one list of `fields`; of a field that holds texts alone, each is a
-/// place in its list of `texts`.
+bool says_something(const json& value) { return !value.is_null() && value != false; }
+
+/// Rows in a sixth of the bytes: as arrays under one list of `fields`, those that most rows have first, without what
+/// ends them that is false or missing; of a field that holds texts alone, each is a place in its list of `texts`.
 json compact(const json& rows) {
-  std::set<std::string> fields, mixed;
+  std::map<std::string, long> uses;
+  std::set<std::string> mixed;
   for (const auto& row : rows)
     for (const auto& [field, value] : row.items()) {
-      fields.insert(field);
+      uses[field] += says_something(value);
       if (!value.is_string()) mixed.insert(field);
     }
+  std::vector<std::string> fields;
+  for (const auto& [field, unused] : uses) fields.push_back(field);
+  std::ranges::stable_sort(fields, std::greater(), [&](const std::string& field) { return uses[field]; });
   json out = {{"fields", fields}, {"texts", json::object()}, {"rows", json::array()}};
   std::map<std::string, std::map<std::string, std::size_t>> places;
   for (const auto& row : rows) {
@@ -76,7 +82,7 @@ json compact(const json& rows) {
     for (const auto& field : fields) {
       const json& value = at(row, field);
       if (value.is_null() || mixed.count(field)) {
-        values.push_back(rounded(value));
+        values.push_back(says_something(value) ? rounded(value) : json());
         continue;
       }
       auto& known = places[field];
@@ -84,6 +90,7 @@ json compact(const json& rows) {
       if (added) out["texts"][field].push_back(value);
       values.push_back(place->second);
     }
+    while (!values.empty() && values.back().is_null()) values.erase(values.size() - 1);
     out["rows"].push_back(std::move(values));
   }
   return out;

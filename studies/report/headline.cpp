@@ -238,7 +238,8 @@ std::vector<std::string> warning_sentences(const Study& study) {
   for (const auto& cell : study.cells)
     for (json warning : array_at(cell.record, "warnings")) {
       if (warning.is_string())  // as 0.1.0 wrote them
-        warning = {{"code", "of an earlier version"}, {"where", warning}, {"text", warning}, {"remedy", "run it again"}};
+        warning = {
+            {"code", "of an earlier version"}, {"where", warning}, {"text", warning}, {"remedy", "run it again"}};
       Kind& kind = kinds[{text_at(warning, "code"), text_at(warning, "where")}];
       const double value = number_at(warning, "value");
       if (kind.runs++ > 0 && value <= kind.worst) continue;

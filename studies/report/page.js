@@ -195,7 +195,7 @@
 
   /** The rows of a figure that are chosen, as objects. */
   const chosenRows = (figure, data) => rowsShown(figure, data.rows.map((values) => Object.fromEntries(
-      data.fields.map((field, i) => [field, meant(data, field, values[i])]).filter(([, value]) => value !== null))));
+      data.fields.map((field, i) => [field, meant(data, field, values[i])]).filter(([, value]) => (value ?? null) !== null))));
 
   /** What is chosen, in a line for paper. */
   function tellChosen(figure) {

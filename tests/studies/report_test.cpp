@@ -79,7 +79,12 @@ TEST_F(Report, CarriesEachChartsRowsUnderOneListOfFields) {
   for (const auto& chart : charts) {
     EXPECT_FALSE(chart["rows"].empty());
     EXPECT_FALSE(chart["charts"].empty());
-    for (const auto& row : chart["rows"]) EXPECT_EQ(row.size(), chart["fields"].size());
+    std::size_t most = 0;
+    for (const auto& row : chart["rows"]) {
+      EXPECT_FALSE(row.empty() || row.back().is_null());
+      most = std::max(most, row.size());
+    }
+    EXPECT_LE(most, chart["fields"].size());
   }
 }
 
@@ -90,11 +95,10 @@ TEST_F(Report, CarriesEachTextOfAChartOnce) {
     for (const auto& [field, texts] : chart["texts"].items()) {
       EXPECT_EQ(std::set<json>(texts.begin(), texts.end()).size(), texts.size()) << field;
       const auto& fields = chart["fields"];
-      const auto place = std::find(fields.begin(), fields.end(), field) - fields.begin();
-      for (const auto& row : chart["rows"]) {
-        const auto& entry = row[static_cast<std::size_t>(place)];
-        EXPECT_TRUE(entry.is_null() || entry.get<std::size_t>() < texts.size()) << field;
-      }
+      const auto place = static_cast<std::size_t>(std::find(fields.begin(), fields.end(), field) - fields.begin());
+      for (const auto& row : chart["rows"])
+        EXPECT_TRUE(row.size() <= place || row[place].is_null() || row[place].get<std::size_t>() < texts.size())
+            << field;
     }
   }
 }
@@ -294,7 +298,7 @@ TEST_F(Report, OfManyRunsShowsSomeAndCountsAll) {
             40);
   const std::string text = page();
   EXPECT_THAT(text, HasSubstr("Of 4000 runs (100 cap, 3900 converged) the charts and tables show 240"));
-  EXPECT_LT(text.size(), 15u << 20);
+  EXPECT_LT(text.size(), 2'000'000u);  // it has 1.75 million, 0.84 of them of the chart library
 }
 
 /// Of one scene with too many settings the best and the worst stay.
