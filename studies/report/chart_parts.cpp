@@ -29,7 +29,7 @@ std::vector<std::string> owners_of(const Study& study) {
 
 std::string color_of(const Study& study, const std::string& family) {
   static const std::map<std::string, std::string> fixed(std::begin(method_colors), std::end(method_colors));
-  static const std::vector<std::string> spare = {"#CC79A7", "#E69F00", "#56B4E9"};
+  static const std::vector<std::string> spare = {purple, orange, sky_blue};
   if (const auto found = fixed.find(family); found != fixed.end()) return found->second;
   std::size_t other = 0;
   for (const auto& name : owners_of(study)) {

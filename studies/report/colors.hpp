@@ -1,6 +1,7 @@
 /// Colours "#RRGGBB" that stand out from the paper of a page, white or dark.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -8,14 +9,18 @@
 namespace stickslip::report {
 
 // Okabe and Ito's palette, which stays apart for all common forms of colour vision; without its yellow, which is lost
-// on white. What cannot include this has copies that a test holds equal: studies/web/page.css,
+// on white. What cannot include this has copies that a test holds equal: studies/web/page.css and picture.js,
 // python/stickslip/plots.py.
+constexpr const char *vermilion = "#D55E00", *blue = "#0072B2", *green = "#009E73", *orange = "#E69F00",
+                     *purple = "#CC79A7", *sky_blue = "#56B4E9";
 
 constexpr std::pair<const char*, const char*> method_colors[] = {
-    {"penalty", "#D55E00"}, {"uzawa_al", "#0072B2"}, {"monolithic_al", "#009E73"}};
+    {"penalty", vermilion}, {"uzawa_al", blue}, {"monolithic_al", green}};
 /// Of states of contact; closed: without friction.
-constexpr const char *stick_color = "#0072B2", *slip_color = "#E69F00", *closed_color = "#5b616b",
-                     *open_color = "#ffffff";
+constexpr const char *stick_color = blue, *slip_color = orange, *closed_color = "#5b616b", *open_color = "#ffffff";
+/// Of stresses, light to dark, so that they read in grey too (the ends of Viridis, turned round).
+inline constexpr std::array stress_colors = {"#f4f1de", "#d9e4a8", "#a8d483", "#6cbf80", "#3ba387",
+                                             "#2a848c", "#31648c", "#3d4287", "#43176a"};
 
 constexpr std::string_view light_paper = "#ffffff", dark_paper = "#16181c";  ///< --paper of page.css
 

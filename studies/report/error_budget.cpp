@@ -7,6 +7,7 @@
 #include <map>
 
 #include "studies/report/chart_parts.hpp"
+#include "studies/report/colors.hpp"
 #include "studies/report/labels.hpp"
 #include "studies/report/look_up.hpp"
 
@@ -26,12 +27,12 @@ struct PartLooks {
 /// In the order of the legend. Dashes tell them apart in grey print, and each line carries its name.
 const std::vector<PartLooks>& part_looks() {
   static const std::vector<PartLooks> all = {{"error", "$ink", {1, 0}, ""},
-                                             {"enforcement", "#D55E00", {7, 3}, "a stricter enforcement"},
-                                             {"iteration", "#0072B2", {4, 2}, "a stricter tolerance"},
-                                             {"step", "#009E73", {9, 3, 2, 3}, "smaller steps"},
-                                             {"mesh", "#CC79A7", {2, 2}, "a finer mesh"},
-                                             {"rounding", "#E69F00", {12, 4}, "a smaller stiffness or scale"},
-                                             {"interaction", "#56B4E9", {1, 4}, ""}};
+                                             {"enforcement", vermilion, {7, 3}, "a stricter enforcement"},
+                                             {"iteration", blue, {4, 2}, "a stricter tolerance"},
+                                             {"step", green, {9, 3, 2, 3}, "smaller steps"},
+                                             {"mesh", purple, {2, 2}, "a finer mesh"},
+                                             {"rounding", orange, {12, 4}, "a smaller stiffness or scale"},
+                                             {"interaction", sky_blue, {1, 4}, ""}};
   return all;
 }
 

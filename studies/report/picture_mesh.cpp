@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "studies/report/colors.hpp"
 #include "studies/report/html.hpp"
 #include "studies/report/look_up.hpp"
 
@@ -15,10 +16,6 @@ namespace stickslip::report {
 using nlohmann::json;
 
 namespace {
-
-/// Light to dark, so that it reads in grey too (the ends of Viridis, turned round).
-constexpr std::array<const char*, 9> colors = {"#f4f1de", "#d9e4a8", "#a8d483", "#6cbf80", "#3ba387",
-                                               "#2a848c", "#31648c", "#3d4287", "#43176a"};
 
 /// A point of the plane, or one in space as it is seen along z; nothing of anything else.
 std::optional<Point> seen(const json& value) {
@@ -153,7 +150,7 @@ std::vector<Point> deformed(const Mesh& mesh, double scale) {
 
 void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& frame, double peak, bool mesh_lines,
                    Drawing& drawing) {
-  std::array<Path, colors.size()> paths;
+  std::array<Path, stress_colors.size()> paths;
   Path lines;
   for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
     const auto nodes = outline(mesh.elements[e]);
@@ -165,18 +162,18 @@ void draw_elements(const Mesh& mesh, const std::vector<Point>& at, const Frame& 
       continue;
     }
     const double share = peak > 0 ? mesh.stress[e] / peak : 0;
-    const auto bin = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * (colors.size() - 1) + 0.5);
+    const auto bin = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * (stress_colors.size() - 1) + 0.5);
     Path& path = nodes.size() == 2 ? lines : paths[bin];
     path.move(frame.x(at[nodes[0]].x), frame.y(at[nodes[0]].y));
     for (std::size_t i = 1; i < nodes.size(); ++i) path.line(frame.x(at[nodes[i]].x), frame.y(at[nodes[i]].y));
     if (nodes.size() > 2) path.close();
     // Faces in space cover those behind them.
     if (mesh.aslant && nodes.size() > 2)
-      drawing.path(std::exchange(path, {}), {mesh_lines ? "#5f6670" : colors[bin], colors[bin], 0.3, {}});
+      drawing.path(std::exchange(path, {}), {mesh_lines ? "#5f6670" : stress_colors[bin], stress_colors[bin], 0.3, {}});
   }
-  for (std::size_t i = 0; i < colors.size(); ++i)
+  for (std::size_t i = 0; i < stress_colors.size(); ++i)
     // Without mesh lines a stroke of the fill's own colour closes the hairlines between neighbours.
-    drawing.path(std::move(paths[i]), {mesh_lines ? "#5f6670" : colors[i], colors[i], 0.3, {}});
+    drawing.path(std::move(paths[i]), {mesh_lines ? "#5f6670" : stress_colors[i], stress_colors[i], 0.3, {}});
   drawing.path(std::move(lines), {"ink", "", 2, {}});
 }
 
@@ -234,8 +231,8 @@ void draw_stresses(double peak, double y, Drawing& drawing) {
   if (!(peak > 0)) return;
   drawing.part(0, y - 4, 350, 36);
   drawing.text(10, y + 12, "equivalent stress");
-  for (std::size_t i = 0; i < colors.size(); ++i)
-    drawing.path(Path().rectangle(145 + 22.0 * static_cast<double>(i), y + 2, 22, 12), {"", colors[i], 1, {}});
+  for (std::size_t i = 0; i < stress_colors.size(); ++i)
+    drawing.path(Path().rectangle(145 + 22.0 * static_cast<double>(i), y + 2, 22, 12), {"", stress_colors[i], 1, {}});
   drawing.text(145, y + 28, "0");
   drawing.text(343, y + 28, number(peak), {Anchor::end});
 }

@@ -1,5 +1,5 @@
 /// Where methods work, profiles and films: charts of all runs of a study.
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "studies/io/atomic_file.hpp"
@@ -278,6 +278,8 @@ TEST(ReportColors, AreThoseOfTheirCopies) {
                                      {"--closed: ", report::closed_color},
                                      {".state.open { fill: ", report::open_color}})
     EXPECT_THAT(css, HasSubstr(std::string(place) + color));
+  EXPECT_THAT(read_file(STICKSLIP_SOURCE_DIR "/studies/web/picture.js"),
+              HasSubstr(fmt::format("'{}'", fmt::join(report::stress_colors, "', '"))));
 }
 
 }  // namespace
