@@ -327,11 +327,16 @@ concept WholeMethod = std::copyable<M> && requires(const M& method, M& changed) 
 
 namespace detail {
 
+template <class M>
+constexpr bool is_whole_method() {
+  static_assert(WholeMethod<M>, "the options of a method lack something");
+  return true;
+}
 template <class... M>
 constexpr bool are_whole_methods(const std::variant<M...>*) {
-  return (WholeMethod<M> && ...);
+  return (is_whole_method<M>() && ...);
 }
-static_assert(are_whole_methods(static_cast<const Method*>(nullptr)), "the options of a method lack something");
+static_assert(are_whole_methods(static_cast<const Method*>(nullptr)));
 
 }  // namespace detail
 

@@ -51,11 +51,16 @@ concept WholeFrictionLaw = requires(const L& law, const double& pressure, Contac
 
 namespace detail {
 
+template <class L>
+constexpr bool is_whole_law() {
+  static_assert(WholeFrictionLaw<L>, "a law of friction lacks something");
+  return true;
+}
 template <class... L>
 constexpr bool are_whole_laws(const std::variant<L...>*) {
-  return (WholeFrictionLaw<L> && ...);
+  return (is_whole_law<L>() && ...);
 }
-static_assert(are_whole_laws(static_cast<const FrictionLaws<double>*>(nullptr)), "a law of friction lacks something");
+static_assert(are_whole_laws(static_cast<const FrictionLaws<double>*>(nullptr)));
 
 /// Calls f(number, value) for each number of a law that is there.
 template <class L, class F>

@@ -39,8 +39,21 @@ concept WholeSurface = requires(const S& surface, const Vec<double, 2>& x, const
   { S::is_flat } -> std::convertible_to<bool>;
   { against<double>(x, x, surface, numbers) } -> std::same_as<PointGeometry<double>>;
 };
-static_assert(WholeSurface<Plane> && WholeSurface<Circle> && WholeSurface<Sphere> && WholeSurface<Cylinder> &&
-              !WholeSurface<Polyline>);
+
+namespace detail {
+
+template <class S>
+constexpr bool is_whole_surface() {
+  if constexpr (!std::is_same_v<S, Polyline>) static_assert(WholeSurface<S>, "a rigid surface lacks something");
+  return true;
+}
+template <class... S>
+constexpr bool are_whole_surfaces(const std::variant<S...>*) {
+  return (is_whole_surface<S>() && ...);
+}
+static_assert(are_whole_surfaces(static_cast<const RigidSurface*>(nullptr)) && !WholeSurface<Polyline>);
+
+}  // namespace detail
 
 inline bool is_in_space(const RigidSurface& surface) {
   return std::visit([](const auto& shape) { return shape.is_in_space; }, surface);
@@ -64,7 +77,6 @@ template <class T, class Start, class Motion, class Read>
 PointGeometry<T> against_rigid(const Start& X, const Motion& w, const RigidSurface& surface, const Read& numbers) {
   return std::visit(
       [&]<class S>(const S& shape) -> PointGeometry<T> {
-        static_assert(WholeSurface<S> || std::is_same_v<S, Polyline>, "a rigid surface lacks something");
         if constexpr (WholeSurface<S>) return against<T>(X, w, shape, numbers);
         return {};
       },
