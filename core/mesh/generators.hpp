@@ -1,9 +1,15 @@
 /// From the description of a mesh to its topology (numbers play no part) and its coordinates (in any scalar, so that
-/// the derivative with respect to every dimension is exact). One file per family: box, quad, ring, disk, half_disk,
-/// half_ball, ball, extruded, chain. It holds the description for the scene, as the user wrote it, which says its keys
-/// (core/algebra/described.hpp), `filling` and cell_count(), the number of its quadrilaterals or bars; fault, topology
-/// and coordinates; and `bend` if it has curved sides: what moves the middles of quadratic elements onto them. What a
-/// description lacks does not compile.
+/// the derivative with respect to every dimension is exact). A family has a file of its own, with
+///
+///   its description   for the scene, as the user wrote it: its keys (core/algebra/described.hpp); what it is made of
+///                     (filling); the number of its quadrilaterals, hexahedra or bars (cell_count); fills_space if it
+///                     has meshes in space
+///   fault()           what is wrong with the description, by its values
+///   topology()        elements of linear shape and sides; of grids, core/mesh/structured.hpp has both
+///   coordinates()     in the scalar of the numbers
+///   bend()            only if it has curved sides: moves the middles of quadratic elements onto them
+///
+/// What a description lacks does not compile; a bend() that is forgotten does.
 #pragma once
 
 #include <string>

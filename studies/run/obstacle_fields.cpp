@@ -11,7 +11,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Where the outline of an obstacle is at the start, of a plane as much as lies beside the bodies.
+/// Where the outline of an obstacle is at the start, of a plane as much as lies beside the bodies; empty of what has
+/// none here.
 std::vector<Eigen::Vector2d> outline_of(const json& drawn, const Points<double>& bodies) {
   const std::string kind = drawn.begin().key();
   const json& shape = drawn.begin().value();
@@ -29,7 +30,7 @@ std::vector<Eigen::Vector2d> outline_of(const json& drawn, const Points<double>&
       out.emplace_back(point(shape["center"]) +
                        shape["radius"].get<double>() * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
     }
-  } else {
+  } else if (kind == "polyline") {
     for (const auto& vertex : shape["points"]) out.push_back(point(vertex));
   }
   return out;

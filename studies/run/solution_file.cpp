@@ -117,9 +117,8 @@ void write_solution_mesh(SolutionWriter& out, const Problem& problem) {
 
 /// 1 / rho of each point where the traction is that of springs; empty where a multiplier bears it.
 RegularisationField<double> springs_of(const CaseResult& result, const Increment<double>& increment) {
-  const auto* penalty = std::get_if<Penalty>(&result.method);
-  if (!penalty) return {};
-  return adapted(initial_regularisation(result.problem->slots, *penalty), increment.rho_factor);
+  if (prevents_penetration(result.method)) return {};
+  return adapted(initial_regularisation(result.problem->slots, result.method), increment.rho_factor);
 }
 
 void write_contact(SolutionWriter& out, const CaseResult& result, const Increment<double>& increment, int contact) {

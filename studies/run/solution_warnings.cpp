@@ -198,8 +198,7 @@ void add_folded_elements(const CaseResult& result, std::vector<Warning>& warning
 /// nodes of that. It yields there by 1/k of its nodes, beside which the springs' 1/(stiffness A) is to be small.
 void add_soft_penalty(const CaseResult& result, std::vector<Warning>& warnings) {
   constexpr double most = 0.02;
-  const auto* penalty = std::get_if<Penalty>(&result.method);
-  if (!penalty) return;
+  if (prevents_penetration(result.method)) return;
   constexpr const char* stiffer = "raise `stiffness`, or take another method";
   double yields = 0;
   for (const auto& step : solved_steps(result)) yields = std::max({yields, step.kkt.gap, step.kkt.stick});
@@ -210,7 +209,7 @@ void add_soft_penalty(const CaseResult& result, std::vector<Warning>& warnings) 
                      "off by about as much",
                      in_percent(yields))});
   const auto& [model, slots, unused] = *result.problem;
-  const auto rho = initial_regularisation(slots, *penalty);
+  const auto rho = initial_regularisation(slots, result.method);
   const auto shares = slave_shares(model, slots);
   std::vector<double> softest(model.scene.contacts.size(), 0);
   for (std::size_t p = 0; p < shares.size(); ++p)

@@ -34,6 +34,9 @@ struct Material {
   explicit Material(const Body& body) {
     if (body.spring()) return;
     const auto law = body.given.at("material").begin();
+    constexpr std::array known{"linear_elastic", "neo_hookean", "j2_plastic"};  // what respond() has
+    if (std::ranges::find(known, law.key()) == known.end())
+      throw BadFile(fmt::format("material {}: its law is not in studies/verify/solids.hpp", law.key()));
     const Json& given = law.value();
     const double nu = given.at("nu");
     E = given.at("E");

@@ -552,6 +552,9 @@ TEST(Verify, RefusesWhatDoesNotFit) {
   EXPECT_THROW(certificate(backwards), verify::BadFile);
   (*solved.solution["mesh"]["bodies"].begin())["elements"][0][0] = 99;
   EXPECT_THROW(certificate(solved), verify::BadFile);
+  Solved unknown = solve(block("plane_strain", "finite", "Q4", rubber()));
+  unknown.solution["scene"]["bodies"]["block"]["material"] = {{"cork", {{"E", 1000}, {"nu", 0.4}}}};
+  EXPECT_THROW(certificate(unknown), verify::BadFile);
 }
 
 // --- it finds what is planted --------------------------------------------------------------------------------------
