@@ -20,7 +20,7 @@
 #include "core/contact/surface.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/model/table.hpp"
-#include "core/solids/descriptions.hpp"
+#include "core/solids/materials.hpp"
 
 namespace stickslip {
 

@@ -18,7 +18,7 @@
 namespace stickslip {
 
 template <class T>
-struct BodyLaw;  // core/solids/materials.hpp, which only what computes with laws includes
+struct BodyLaw;  // core/solids/materials.hpp
 
 /// Nodal forces of a load at history = 1, on the dofs on which it acts.
 template <class T>

@@ -11,10 +11,15 @@
 #include <limits>
 #include <vector>
 
+#include "core/algebra/number.hpp"
 #include "core/algebra/scalar.hpp"
-#include "core/solids/descriptions.hpp"
 
 namespace stickslip {
+
+/// A row of a table of hardening.
+struct HardeningRow {
+  Number strain, stress;
+};
 
 /// The branch that a flow takes. Derivatives at a tie between two take one that is given
 /// (sensitivity/ties/flow_tie.hpp).

@@ -24,6 +24,11 @@
 
 namespace stickslip {
 
+struct J2Plastic {
+  Number E, nu, yield, hardening;        ///< `hardening`: behind the last row of the table, where there is one
+  std::vector<HardeningRow> table = {};  ///< strains increase from above 0, stresses do not fall below `yield`
+};
+
 namespace detail {
 
 /// Plane stress on its way back to the bound: q^2 = (p / (1 + K m))^2 + 3 (s / (1 + 3 G m))^2, m = d / bound(d).

@@ -7,12 +7,25 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 
+#include "core/algebra/described.hpp"
 #include "core/algebra/scalar.hpp"
-#include "core/solids/descriptions.hpp"
 #include "core/solids/tensor.hpp"
 
 namespace stickslip {
+
+struct LinearElastic {
+  static constexpr const char *key = "linear_elastic",
+                              *about = "of bars, and where strains are small of all but points",
+                              *place = "fills bars, and where strains are small all but points";
+  Number E, nu;
+
+  static constexpr auto keys() {
+    return std::tuple{Key{&LinearElastic::E, "E", "Young's modulus (force per area)", InRange{Range::positive, 1000}},
+                      Key{&LinearElastic::nu, "nu", "Poisson's ratio", InRange{Range::poisson_ratio, 0.3}}};
+  }
+};
 
 /// Lame's first constant in plane stress, where the thickness adapts.
 template <class T>

@@ -1,6 +1,7 @@
-/// The list of laws: what each material that a scene may name (core/solids/descriptions.hpp) becomes in a scalar T.
+/// The list of materials that a scene may name, and the list of the laws that they become in a scalar T.
 ///
-/// The law of a material has a file of its own, with what makes a law of a description,
+/// A material has a file of its own, with its description: its numbers, its keys (core/algebra/described.hpp), and what
+/// it is for, a verb first (place); with its law; and with what makes the law of the description,
 ///
 ///   law_of(material, space, strains, numbers)         where it fills a continuum
 ///   bar_of(material, elastic, numbers)                where it fills bars too: elastic is the law of bars of its E
@@ -28,10 +29,25 @@
 
 namespace stickslip {
 
+using Material = std::variant<LinearElastic, NeoHookean, J2Plastic, GroundedSpring>;
+
+/// Why a material does not go with elements of a continuum, completing "MATERIAL ..."; empty where it does.
+const char* fault_of(const Material& material, Kinematics kinematics, Strains strains);
+
+/// Numbers that a point of a continuum of a material remembers, and a bar of it.
+int memory_of(const Material& material, TensorLayout layout);
+int memory_of_bar(const Material& material);
+
+/// Whether bodies of a material remember how they flowed.
+bool flows(const Material& material);
+
+/// Whether a continuum of a material hardly changes its volume.
+bool is_nearly_incompressible(const Material& material);
+
 template <class T>
 using Law = std::variant<LinearElasticLaw<T>, NeoHookeanLaw<T>, J2Law<T>, BarLaw<T>, PlasticBarLaw<T>, SpringLaw<T>>;
 
-/// Of a body. (A class, for Slots to hold where laws are not known.)
+/// Of a body. (A class, so that Slots need not name the list.)
 template <class T>
 struct BodyLaw {
   Law<T> law;

@@ -33,6 +33,22 @@
 
 namespace stickslip {
 
+struct NeoHookean {
+  static constexpr const char *key = "neo_hookean", *about = "of all but bars and points where strains are finite",
+                              *place = "fills all but bars and points where strains are finite";
+  enum class Volumetric { quadratic, log };
+  Number E, nu;
+  Volumetric volumetric = Volumetric::quadratic;
+
+  static constexpr auto keys() {
+    return std::tuple{
+        Key{&NeoHookean::E, "E", "Young's modulus of small strains (force per area)", InRange{Range::positive, 1000}},
+        Key{&NeoHookean::nu, "nu", "Poisson's ratio of small strains", InRange{Range::poisson_ratio, 0.3}},
+        Key{&NeoHookean::volumetric, "volumetric", "energy of a change of volume: lame/2 (J - 1)^2, or lame/2 (ln J)^2",
+            std::array{"quadratic", "log"}}};
+  }
+};
+
 namespace detail {
 
 /// Plane stress of the logarithmic law: x = |ln F_22|, whose sign is given; the stress across, over the shear modulus

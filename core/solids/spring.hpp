@@ -1,10 +1,17 @@
 /// Spring of a point to its anchor: force K d, energy d.K d / 2, d the displacement of the point from its anchor.
 #pragma once
 
+#include <vector>
+
+#include "core/algebra/number.hpp"
 #include "core/algebra/scalar.hpp"
-#include "core/solids/descriptions.hpp"
 
 namespace stickslip {
+
+/// D x D, symmetric, positive definite.
+struct GroundedSpring {
+  std::vector<std::vector<Number>> stiffness;
+};
 
 template <class T>
 struct SpringLaw {
