@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "studies/app/schema_texts.hpp"
+#include "studies/input/file_objects.hpp"
 #include "studies/input/friction_laws.hpp"
 #include "studies/input/materials.hpp"
 #include "studies/input/mesh_kinds.hpp"
@@ -11,6 +11,7 @@
 #include "studies/input/response_kinds.hpp"
 #include "studies/input/small_objects.hpp"
 #include "studies/sweep/closed_forms.hpp"
+#include "studies/sweep/study_reading.hpp"
 
 namespace stickslip {
 namespace {
@@ -19,33 +20,18 @@ using Schema = nlohmann::ordered_json;
 
 constexpr const char* draft = "https://json-schema.org/draft/2020-12/schema";
 
-/// The kinds of obstacles, one of which goes with what all of them may have.
-void add_obstacle_kinds(Schema& obstacle) {
-  Schema properties = Schema::object(), one = Schema::array();
-  for (const auto& kind : obstacle_kinds()) {
-    properties[kind.key] = kind.schema();
-    one.push_back({{"required", {kind.key}}});
-  }
-  properties.update(obstacle["properties"]);
-  obstacle["properties"] = properties;
-  obstacle["oneOf"] = one;
-}
-
-Schema document(const char* title, const char* properties, const Schema& required, const Schema& definitions) {
-  return {{"$schema", draft},
-          {"title", title},
-          {"type", "object"},
-          {"required", required},
-          {"additionalProperties", false},
-          {"properties", Schema::parse(properties)},
-          {"$defs", definitions}};
+Schema document(const char* title, const Schema& object, const Schema& definitions) {
+  Schema whole{{"$schema", draft}, {"title", title}, {"type", "object"}, {"additionalProperties", false}};
+  whole.update(object);
+  whole["$defs"] = definitions;
+  return whole;
 }
 
 }  // namespace
 
 Schema scene_schema() {
-  Schema definitions = Schema::parse(schema_texts::common);
-  definitions.update(Schema::parse(schema_texts::motion));
+  Schema definitions = scene_object("common definitions");
+  definitions.update(scene_object("definitions of scenes"));
   definitions["mesh"] = mesh_schema();
   definitions["plane_mesh"] = plane_mesh_schema();
   Schema materials;
@@ -53,8 +39,9 @@ Schema scene_schema() {
   definitions["material"] = one_of(materials);
   definitions["response"] = response_schema();
   definitions["method"] = method_schema(OptionLists::refused);
-  Schema schema = document("stickslip scene", schema_texts::scene, {"bodies", "time"}, definitions);
-  add_obstacle_kinds(schema["properties"]["obstacles"]["additionalProperties"]);
+  Schema schema = document("stickslip scene", scene_object("scene"), definitions);
+  Schema& obstacle = schema["properties"]["obstacles"]["additionalProperties"];
+  obstacle = with_kinds(obstacle, obstacle_kinds());
   Schema& contact = schema["properties"]["contacts"]["additionalProperties"]["properties"];
   schema["properties"][LinearSolverObject::key] = schema_of_object<LinearSolverObject>();
   schema["properties"][SensitivityObject::key] = schema_of_object<SensitivityObject>();
@@ -63,11 +50,10 @@ Schema scene_schema() {
 }
 
 Schema study_schema() {
-  Schema definitions = Schema::parse(schema_texts::common);
+  Schema definitions = scene_object("common definitions");
   definitions["method"] = method_schema(OptionLists::refused);
   definitions["swept_method"] = method_schema(OptionLists::swept);
-  Schema schema = document("stickslip study", schema_texts::study, Schema::array(), definitions);
-  schema["oneOf"] = {{{"required", {"scene"}}}, {{"required", {"scenes"}}}};
+  Schema schema = document("stickslip study", study_object("study"), definitions);
   schema["properties"]["reference"]["items"]["properties"]["analytic"]["enum"] = analytic_names();
   schema["properties"][TimingObject::key] = schema_of_object<TimingObject>();
   schema["properties"]["error_budget"]["anyOf"][1]["properties"] = schema_of_keys<ErrorBudgetObject>().properties;

@@ -1,6 +1,6 @@
 /// JSON Schemas (draft 2020-12) of the files this program reads, for editors to complete and check them, and for the
-/// tables of docs/. The readers decide; tests hold each object's keys, and the defaults, against theirs. Keys stand in
-/// the order in which they are explained.
+/// tables of docs/. The keys of an object are those that its reader allows, from one description
+/// (studies/input/file_objects.hpp, studies/input/described.hpp); tests hold defaults and rules against the readers.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -6,11 +6,39 @@
 
 #include "core/solids/materials.hpp"
 #include "studies/input/described.hpp"
+#include "studies/input/file_objects.hpp"
 
 namespace stickslip {
 namespace {
 
 using Schema = nlohmann::ordered_json;
+
+Schema j2_schema() {
+  return Schema::parse(R"json({
+  "description": "elastoplastic, of all but points: J2 (von Mises) with isotropic hardening", "type": "object",
+  "examples": [{"E": 1000, "nu": 0.3, "yield": 10, "hardening": 100}],
+  "required": ["E", "nu", "hardening"], "if": {"properties": {"hardening": {"type": "number"}}},
+  "then": {"required": ["yield"]}, "additionalProperties": false, "properties": {
+    "E": {"description": "Young's modulus (force per area)", "$ref": "#/$defs/positive", "examples": [1000]},
+    "nu": {"description": "Poisson's ratio", "title": "number > -1 and < 0.5", "type": "number",
+      "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]},
+    "yield": {"description": "stress at which it begins to flow (force per area); may be left out where a table of hardening begins at 0",
+      "$ref": "#/$defs/positive", "examples": [10]},
+    "hardening": {"description": "rise of that stress with the equivalent plastic strain, 0: perfect plasticity (force per area); or a table [[plastic strain, stress], ...], straight between its rows and constant behind the last",
+      "title": "number >= 0, or [[plastic strain, stress], ...]", "examples": [100, [[0, 10], [0.02, 14], [0.1, 18]]],
+      "anyOf": [{"type": "number", "minimum": 0}, {"type": "array", "minItems": 1, "items": {"type": "array",
+        "minItems": 2, "maxItems": 2, "items": {"type": "number", "minimum": 0}}}]}}})json");
+}
+
+Schema spring_schema() {
+  return Schema::parse(R"json({
+  "description": "of a point: the spring to its anchor", "type": "object",
+  "examples": [{"stiffness": [[100, 0], [0, 100]]}], "required": ["stiffness"],
+  "additionalProperties": false, "properties": {
+    "stiffness": {"description": "symmetric and positive definite (force per length)",
+      "title": "2 x 2 matrix (3 x 3 in space)", "type": "array", "items": {"$ref": "#/$defs/vector"},
+      "minItems": 2, "maxItems": 3, "examples": [[[100, 0], [0, 100]]]}}})json");
+}
 
 /// [[plastic strain, stress], ...]; a first row at strain 0 is the yield stress.
 void read_hardening_table(const JsonNode& node, J2Plastic& material, bool yields, SceneReading& reading) {
@@ -46,7 +74,7 @@ void read_hardening_table(const JsonNode& node, J2Plastic& material, bool yields
 }
 
 std::optional<Material> read_j2(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"E", "nu", "hardening"}, {"yield"}})) return std::nullopt;
+  if (!node.is_object(keys_of(j2_schema()))) return std::nullopt;
   J2Plastic material{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio), 0.0, 0.0};
   const auto yield = node.find("yield"), hardening = node.find("hardening");
   if (yield) material.yield = reading.number(*yield, positive);
@@ -60,7 +88,7 @@ std::optional<Material> read_j2(const JsonNode& node, SceneReading& reading) {
 }
 
 std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object({{"stiffness"}})) return std::nullopt;
+  if (!node.is_object(keys_of(spring_schema()))) return std::nullopt;
   const auto matrix = node.find("stiffness");
   if (!matrix) return std::nullopt;
   const int d = reading.dimension();
@@ -89,33 +117,6 @@ std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading)
     return std::nullopt;
   }
   return spring;
-}
-
-Schema j2_schema() {
-  return Schema::parse(R"json({
-  "description": "elastoplastic, of all but points: J2 (von Mises) with isotropic hardening", "type": "object",
-  "examples": [{"E": 1000, "nu": 0.3, "yield": 10, "hardening": 100}],
-  "required": ["E", "nu", "hardening"], "if": {"properties": {"hardening": {"type": "number"}}},
-  "then": {"required": ["yield"]}, "additionalProperties": false, "properties": {
-    "E": {"description": "Young's modulus (force per area)", "$ref": "#/$defs/positive", "examples": [1000]},
-    "nu": {"description": "Poisson's ratio", "title": "number > -1 and < 0.5", "type": "number",
-      "exclusiveMinimum": -1, "exclusiveMaximum": 0.5, "examples": [0.3]},
-    "yield": {"description": "stress at which it begins to flow (force per area); may be left out where a table of hardening begins at 0",
-      "$ref": "#/$defs/positive", "examples": [10]},
-    "hardening": {"description": "rise of that stress with the equivalent plastic strain, 0: perfect plasticity (force per area); or a table [[plastic strain, stress], ...], straight between its rows and constant behind the last",
-      "title": "number >= 0, or [[plastic strain, stress], ...]", "examples": [100, [[0, 10], [0.02, 14], [0.1, 18]]],
-      "anyOf": [{"type": "number", "minimum": 0}, {"type": "array", "minItems": 1, "items": {"type": "array",
-        "minItems": 2, "maxItems": 2, "items": {"type": "number", "minimum": 0}}}]}}})json");
-}
-
-Schema spring_schema() {
-  return Schema::parse(R"json({
-  "description": "of a point: the spring to its anchor", "type": "object",
-  "examples": [{"stiffness": [[100, 0], [0, 100]]}], "required": ["stiffness"],
-  "additionalProperties": false, "properties": {
-    "stiffness": {"description": "symmetric and positive definite (force per length)",
-      "title": "2 x 2 matrix (3 x 3 in space)", "type": "array", "items": {"$ref": "#/$defs/vector"},
-      "minItems": 2, "maxItems": 3, "examples": [[[100, 0], [0, 100]]]}}})json");
 }
 
 // Materials that say no keys(), for what they hold are not numbers and words alone.

@@ -8,6 +8,7 @@
 
 #include "core/mesh/split.hpp"
 #include "studies/input/described.hpp"
+#include "studies/input/file_objects.hpp"
 #include "studies/io/atomic_file.hpp"
 
 namespace stickslip {
@@ -139,11 +140,12 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
   keys.reserve(mesh_kinds().size() + 1);
   for (const auto& kind : mesh_kinds()) keys.emplace_back(kind.key);
   keys.emplace_back("gmsh");
-  const auto named = node.kind(keys, {"sphere"}, {"body", "split"});
+  const auto beside_gmsh = keys_of(scene_object("mesh"), {"gmsh"}).optional;
+  const auto named = node.kind(keys, {"sphere"}, beside_gmsh);
   if (!named) return std::nullopt;
   const auto& [name, mesh] = *named;
   if (name != "gmsh")
-    for (const char* key : {"body", "split"})
+    for (const std::string& key : beside_gmsh)
       if (const auto found = node.find(key)) found->error_at_key("belongs to gmsh, not to " + name);
   const auto generator = std::find_if(mesh_kinds().begin(), mesh_kinds().end(),
                                       [&name = name](const MeshKind& kind) { return name == kind.key; });
@@ -166,36 +168,6 @@ Schema plane_mesh_schema() {
   return one_of(properties);
 }
 
-Schema mesh_schema() {
-  Schema properties = Schema::object(), one = Schema::array();
-  for (const auto& kind : mesh_kinds()) {
-    properties[kind.key] = kind.schema();
-    one.push_back({{"required", {kind.key}}});
-  }
-  properties["gmsh"] = {
-      {"description",
-       "file of gmsh beside the scene, MSH 2.2 or 4.1 ASCII; sides: its physical curves, in space surfaces; with body"},
-      {"type", "string"},
-      {"examples", {"two_half_disks.msh"}}};
-  properties["body"] = {
-      {"description", "beside gmsh: the physical name of a surface, in space of a volume, in the file"},
-      {"type", "string"},
-      {"examples", {"upper"}}};
-  properties["split"] = {
-      {"description",
-       "beside gmsh: how often every element is split into four, in space eight; corners stay, sides keep "
-       "the shape that their elements give them"},
-      {"title", "a whole number >= 0"},
-      {"type", "integer"},
-      {"minimum", 0},
-      {"default", 0},
-      {"examples", {1}}};
-  one.push_back({{"required", {"gmsh", "body"}}});
-  return {{"type", "object"},
-          {"title", "one of the following"},
-          {"additionalProperties", false},
-          {"properties", properties},
-          {"oneOf", one}};
-}
+Schema mesh_schema() { return with_kinds(scene_object("mesh"), mesh_kinds()); }
 
 }  // namespace stickslip

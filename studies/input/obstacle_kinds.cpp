@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "studies/input/described.hpp"
+#include "studies/input/file_objects.hpp"
 #include "studies/io/json_pointer.hpp"
 
 namespace stickslip {
@@ -12,9 +13,19 @@ namespace {
 using nlohmann::json;
 using Schema = nlohmann::ordered_json;
 
+Schema polyline_schema() {
+  return Schema::parse(R"json({
+  "description": "straight facets; not in space", "type": "object", "required": ["points"],
+  "examples": [{"points": [[5, 0], [0, 0], [0, 2]]}], "additionalProperties": false, "properties": {
+    "points": {
+      "description": "the solid is on the right of the way along them; the first once more closes it (length)",
+      "title": "two or more [x, y]", "type": "array",
+      "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}})json");
+}
+
 std::optional<RigidSurface> read_polyline(const JsonNode& node, SceneReading& reading) {
   constexpr const char* allowed = "an array of two points [x, y] or more, the solid on the right of the way along them";
-  if (!node.is_object({{"points"}})) return std::nullopt;
+  if (!node.is_object(keys_of(polyline_schema()))) return std::nullopt;
   const auto points = node.find("points");
   if (!points) return std::nullopt;
   if (!points->value().is_array() || points->value().size() < 2) {
@@ -62,16 +73,6 @@ json as_drawn(const Polyline& polyline) {
   for (const auto& x : polyline.points) vertices.push_back(value_json(x));
   if (polyline.closed) vertices.push_back(vertices.front());
   return {{"polyline", {{"points", vertices}}}};
-}
-
-Schema polyline_schema() {
-  return Schema::parse(R"json({
-  "description": "straight facets; not in space", "type": "object", "required": ["points"],
-  "examples": [{"points": [[5, 0], [0, 0], [0, 2]]}], "additionalProperties": false, "properties": {
-    "points": {
-      "description": "the solid is on the right of the way along them; the first once more closes it (length)",
-      "title": "two or more [x, y]", "type": "array",
-      "minItems": 2, "items": {"$ref": "#/$defs/pair"}, "examples": [[[5, 0], [0, 0], [0, 2]]]}}})json");
 }
 
 ObstacleKind entry_of(std::type_identity<Polyline>) { return {"polyline", polyline_schema, read_polyline}; }

@@ -4,6 +4,7 @@
 #include "core/mesh/generators.hpp"
 #include "core/mesh/quality.hpp"
 #include "core/model/model.hpp"
+#include "studies/input/file_objects.hpp"
 #include "studies/input/materials.hpp"
 #include "studies/input/mesh_kinds.hpp"
 #include "studies/input/size_estimate.hpp"
@@ -149,13 +150,13 @@ void read_section(const JsonNode& node, const MeshDescription& mesh, Body& body,
   const Filling filling = filling_of(mesh);
   const bool bars = filling == Filling::bars;
   if (bars)
-    body.area = reading.optional(node, "area", 1, positive);
+    body.area = read_number(node, scene_object("body"), "area", reading);
   else if (area)
     area->error_at_key("only bars (line, arc) have an area");
   const Space space = reading.scene.space;
   const bool plane = space == Space::plane_strain || space == Space::plane_stress;
   if (plane && filling == Filling::continuum)
-    body.thickness = reading.optional(node, "thickness", 1, positive);
+    body.thickness = read_number(node, scene_object("body"), "thickness", reading);
   else if (thickness)
     thickness->error_at_key(plane ? "only a continuum has a thickness; a bar has an area"
                                   : "only a body of plane_strain or plane_stress has a thickness");
@@ -165,15 +166,11 @@ void read_section(const JsonNode& node, const MeshDescription& mesh, Body& body,
 
 void read_body(const std::string& name, const JsonNode& node, SceneReading& reading) {
   check_name(node, name);
-  if (!node.is_object({{"mesh", "material"}, {"element", "area", "thickness"}})) return;
+  if (!node.is_object(keys_of(scene_object("body")))) return;
   Body body;
   body.name = name;
-  if (const auto element = node.find("element")) {
-    body.element = element
-                       ->choice({"Q4", "Q4_mean_dilatation", "Q8", "T3", "T6", "H8", "H8_mean_dilatation", "H20", "H27",
-                                 "T4", "T10", "bar", "point"})
-                       .value_or("");
-  }
+  if (const auto element = node.find("element"))
+    body.element = element->choice(choices_of(scene_object("body"), "element")).value_or("");
   const auto mesh_node = node.find("mesh");
   const auto mesh = mesh_node ? read_mesh(*mesh_node, reading) : std::nullopt;
   const auto material_node = node.find("material");

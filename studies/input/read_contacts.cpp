@@ -3,6 +3,7 @@
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/sides.hpp"
+#include "studies/input/file_objects.hpp"
 #include "studies/input/friction_laws.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 
@@ -23,7 +24,7 @@ void read_obstacle(const std::string& name, const JsonNode& node, SceneReading& 
     if (kind.is_in_plane) in_plane.push_back(kind.key);
     if (kind.is_in_space) in_space.push_back(kind.key);
   }
-  const auto chosen = node.kind(keys, {}, {"move", "rotate"});
+  const auto chosen = node.kind(keys, {}, keys_of(scene_object("obstacle")).optional);
   if (!chosen) return;
   const auto& [key, shape] = *chosen;
   Obstacle obstacle;
@@ -84,9 +85,10 @@ void read_surface(const JsonNode& node, Contact& contact, const SceneReading& re
       node.must_be(R"("faceted", "smooth" or {"smooth": "catmull_rom" or "b_spline", "corner": degrees})");
     return;
   }
-  if (!node.is_object({{"smooth"}, {"corner"}})) return;
+  const auto& described = scene_object("surface");
+  if (!node.is_object(keys_of(described))) return;
   if (const auto kind = node.find("smooth"))
-    if (kind->choice({"catmull_rom", "b_spline"}) == "b_spline") contact.smoothing = Smoothing::b_spline;
+    if (kind->choice(choices_of(described, "smooth")) == "b_spline") contact.smoothing = Smoothing::b_spline;
   constexpr Rule angle{"an angle > 0 and <= 180, in degrees", [](double x) { return x > 0 && x <= 180; }};
   if (const auto corner = node.find("corner")) contact.corner = corner->number(angle).value_or(contact.corner);
 }
@@ -190,12 +192,11 @@ void check_segments(const JsonNode& node, const Contact& contact, bool is_solid,
 }
 
 void read_contact(const std::string& name, const JsonNode& node, SceneReading& reading) {
+  const auto& described = scene_object("contact");
   const auto between = node.value().is_object() ? node.find("between") : std::nullopt;
-  if (!node.is_object(
-          between ? Keys{{"between"}, {"slave", "master", "self", "friction", "offset", "surface", "discretization"}}
-                  : Keys{{"slave", "master"}, {"between", "self", "friction", "offset", "surface", "discretization"}}))
-    return;
-  for (const char* key : between ? std::vector{"slave", "master"} : std::vector{"self"})
+  using Names = std::vector<std::string>;
+  if (!node.is_object(keys_of(described, between ? Names{"between"} : Names{"slave", "master"}))) return;
+  for (const std::string& key : between ? Names{"slave", "master"} : Names{"self"})
     if (const auto other = node.find(key))
       other->error_at_key(between ? R"(does not go with "between", which names bodies)" : R"(belongs to "between")");
   Contact contact;
@@ -220,7 +221,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
     contact.master = text.value_or("");
   }
   if (const auto friction = node.find("friction")) contact.friction = read_friction(*friction, reading);
-  contact.offset = reading.optional(node, "offset", 0, any_number);
+  contact.offset = read_number(node, described, "offset", reading);
   if (const auto surface = node.find("surface")) read_surface(*surface, contact, reading);
   const bool is_solid =
       between || !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
@@ -233,7 +234,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   if (self && reading.dimension() == 3)
     touches_itself->must_be("false in the space solid: a body does not touch itself there");
   if (const auto discretization = node.find("discretization")) {
-    contact.segment = discretization->choice({"node", "segment"}) == "segment";
+    contact.segment = discretization->choice(choices_of(described, "discretization")) == "segment";
     const bool of_itself = between ? self : contact.is_of_itself();
     if (contact.segment) check_segments(*discretization, contact, is_solid, of_itself, reading);
   }

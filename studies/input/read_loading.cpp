@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "core/model/model.hpp"
-#include "studies/input/scene_reading.hpp"
+#include "studies/input/file_objects.hpp"
 
 namespace stickslip {
 namespace {
@@ -53,7 +53,7 @@ void check_agreement(const JsonNode& move, const NamedSide& side, std::size_t in
 }
 
 void read_support(const JsonNode& node, SceneReading& reading, Held& held) {
-  if (!node.is_object({{"on"}, {"move", "rotate", "along", "value"}})) return;
+  if (!node.is_object(keys_of(scene_object("support")))) return;
   Support support;
   const auto on = node.find("on"), move = node.find("move"), rotate = node.find("rotate"), value = node.find("value");
   const auto side = on ? reading.side(*on) : std::nullopt;
@@ -116,7 +116,7 @@ bool varies_in_time(const JsonNode& amount, Load::Kind kind, const SceneReading&
 
 void read_load(const JsonNode& node, SceneReading& reading) {
   constexpr std::array kinds{"traction", "pressure", "force", "body_force"};  // in the order of Load::Kind
-  const auto kind = node.kind({kinds.begin(), kinds.end()}, {}, {"on", "history"});
+  const auto kind = read_kind(node, scene_object("load"));
   if (!kind) return;
   Load load;
   load.kind = static_cast<Load::Kind>(std::find(kinds.begin(), kinds.end(), kind->first) - kinds.begin());
@@ -183,9 +183,9 @@ void read_control(const JsonNode& node, SceneReading& reading) {
   arc.max = 10 * leg.steps;
   const int loads = static_cast<int>(scene.loads.size());
   if (node.value().is_object()) {
-    if (!node.is_object({{"arc_length"}, {}})) return;
+    if (!node.is_object(keys_of(scene_object("control")))) return;
     const auto options = node.find("arc_length");
-    if (!options || !options->is_object({{}, {"load", "length", "max"}})) return;
+    if (!options || !options->is_object(keys_of(scene_object("arc_length")))) return;
     if (const auto load = options->find("load")) {
       arc.load = reading.count(*load, 0).value_or(0);
       if (arc.load >= loads)
@@ -237,7 +237,7 @@ void read_time(const JsonNode& node, SceneReading& reading) {
       control->error_at_key(R"("control" stands beside "legs"; a path has one leg: "end" and "steps")");
     return read_legs(*legs, reading);
   }
-  node.is_object({{"end", "steps"}, {"legs", "control"}});
+  node.is_object(keys_of(scene_object("time"), {"end", "steps"}));
   const auto end = node.find("end"), steps = node.find("steps");
   Leg leg;
   if (end) leg.end = reading.time(*end, positive).value_or(1);

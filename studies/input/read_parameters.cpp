@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "studies/input/file_objects.hpp"
 #include "studies/input/method_options.hpp"
-#include "studies/input/scene_reading.hpp"
 
 namespace stickslip {
 namespace {
@@ -120,12 +120,13 @@ struct ParameterReader {
 
   /// {"side", "direction"}, "fixed", "each", "value".
   void read_shape(const std::string& name, const JsonNode& node) {
-    if (!node.is_object({{"side", "direction"}, {"fixed", "each", "value"}})) return;
+    const auto& described = scene_object("shape");
+    if (!node.is_object(keys_of(described))) return;
     const auto side_node = node.find("side"), direction = node.find("direction"), fixed = node.find("fixed"),
                each = node.find("each");
     const auto side = side_node ? reading.side(*side_node) : std::nullopt;
     const auto stays = fixed ? reading.side(*fixed) : std::nullopt;
-    if (each) each->choice({"node"});
+    if (each) each->choice(choices_of(described, "each"));
     ShapeMotion motion;
     const auto components =
         direction ? direction->array(reading.dimension(),
@@ -171,7 +172,7 @@ struct ParameterReader {
     } else if (!node.value().is_object() || node.value().empty()) {
       return node.must_be(allowed);
     } else if (const auto shape = node.find("shape")) {
-      if (node.is_object({{"shape"}})) read_shape(name, *shape);
+      if (node.is_object(keys_of(scene_object("parameter")))) read_shape(name, *shape);
       return;
     } else {
       for (const auto& [pointer, weight] : node.members()) {

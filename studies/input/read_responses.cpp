@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
 
+#include "studies/input/file_objects.hpp"
 #include "studies/input/response_kinds.hpp"
-#include "studies/input/scene_reading.hpp"
 
 namespace stickslip {
 namespace {
@@ -150,7 +150,7 @@ void read_instant(const JsonNode& node, Objective& objective, SceneReading& read
 
 void read_objective(const std::string& name, const JsonNode& node, SceneReading& reading) {
   check_characters(node, name);
-  if (!node.is_object({{"of"}, {"sum", "at", "target"}})) return;
+  if (!node.is_object(keys_of(scene_object("objective")))) return;
   Objective objective;
   objective.name = name;
   const auto& responses = reading.scene.responses;

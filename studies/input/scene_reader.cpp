@@ -3,20 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "studies/input/file_objects.hpp"
 #include "studies/input/method_options.hpp"
-#include "studies/input/scene_reading.hpp"
 #include "studies/input/small_objects.hpp"
 
 namespace stickslip {
 namespace {
-
-void read_space(const JsonNode& node, SceneReading& reading) {
-  node.word(reading.scene.space, std::array{"plane_strain", "plane_stress", "axisymmetric", "solid"});
-}
-
-void read_strain(const JsonNode& node, SceneReading& reading) {
-  node.word(reading.scene.finite_strain, std::array{"small", "finite"});
-}
 
 void read_linear_solver(const JsonNode& node, SceneReading& reading, Input& input) {
   const Scene& scene = reading.scene;
@@ -38,7 +30,7 @@ void read_linear_solver(const JsonNode& node, SceneReading& reading, Input& inpu
 
 /// Input::fields_every.
 int read_output(const JsonNode& node) {
-  const auto fields = node.is_object({{}, {"fields"}}) ? node.find("fields") : std::nullopt;
+  const auto fields = node.is_object(keys_of(scene_object("output"))) ? node.find("fields") : std::nullopt;
   if (!fields || fields->value() == "last") return 0;
   if (fields->value() == "all") return 1;
   if (fields->value().is_number()) return fields->count(1).value_or(1);
@@ -111,10 +103,7 @@ bool is_scene(const JsonDocument& given, Diagnostics& diagnostics) {
     root.error("is a study, not a scene; `stickslip study` runs it");
     return false;
   }
-  return root.is_object(
-      {{"bodies", "time"},
-       {"$schema", "title", "space", "strain", "obstacles", "contacts", "supports", "loads", "responses", "objectives",
-        "parameters", "method", "linear_solver", "output", "sensitivity"}});
+  return root.is_object(keys_of(scene_object("scene")));
 }
 
 /// All of a scene but its method and its parameters; each part goes on from those before it.
@@ -124,8 +113,8 @@ void read_parts(const JsonNode& root, SceneReading& reading, Input& input) {
   };
   if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) reading.scene.title = title->text().value_or("");
-  part("space", read_space);
-  part("strain", read_strain);
+  read_word(root, scene_object("scene"), "space", reading.scene.space);
+  read_word(root, scene_object("scene"), "strain", reading.scene.finite_strain);
   part("bodies", read_bodies);
   part("obstacles", read_obstacles);
   part("contacts", read_contacts);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "studies/input/file_objects.hpp"
 #include "studies/io/printing.hpp"
 
 namespace stickslip {
@@ -72,7 +73,7 @@ Table SceneReading::table(const JsonNode& node) {
   if (node.value().is_number()) {
     table.points = {{0, number(node, any_number)}};
   } else if (node.value().is_object()) {
-    if (node.is_object({{"table"}, {"repeat"}}))
+    if (node.is_object(keys_of(scene_object("table"))))
       if (const auto of = node.find("table")) points(*of, table);
     if (const auto repeat = node.find("repeat")) table.repeat = count(*repeat, 1).value_or(1);
     if (table.repeat > 1 && table.points.size() < 2) {
@@ -104,9 +105,9 @@ Rotation SceneReading::rotation(const JsonNode& node) {
       axis->error_at_key("an axis needs the space solid; in a plane space a rotation is about its center");
       return rotation;
     }
-  if (!node.is_object(
-          {space ? std::vector<std::string>{"center", "axis", "angle"} : std::vector<std::string>{"center", "angle"}}))
-    return rotation;
+  Keys keys = keys_of(scene_object("rotate"));
+  if (space) keys.required = {"center", "axis", "angle"};
+  if (!node.is_object({keys.required})) return rotation;
   rotation.center = required_vector(node, "center", dimension());
   if (const auto axis = node.find("axis")) rotation.axis = direction(*axis, "a vector that is not zero");
   if (const auto angle = node.find("angle")) rotation.angle = table(*angle);

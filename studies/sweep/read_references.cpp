@@ -98,7 +98,7 @@ void read_analytic(const JsonNode& node, const JsonNode& form_node, const json& 
 }
 
 std::optional<Reference> read_reference(const JsonNode& node, const json& scene) {
-  const auto kind = node.kind({"analytic", "values", "method", "overkill"}, {}, {"map", "inputs"});
+  const auto kind = read_kind(node, study_object("reference"));
   if (!kind) return std::nullopt;
   const auto& [name, value] = *kind;
   Reference reference;
@@ -119,7 +119,7 @@ std::optional<Reference> read_reference(const JsonNode& node, const json& scene)
   } else if (name == "overkill") {
     reference.kind = Reference::Kind::overkill;
     reference.method = {"monolithic_al", node.place(), {}};
-    if (!value.is_object({{}, {"refine", "vary"}})) return std::nullopt;
+    if (!value.is_object(keys_of(study_object("overkill")))) return std::nullopt;
     const auto level = value.find("refine"), meshes = value.find("vary");
     if (!level && !meshes)
       value.error(

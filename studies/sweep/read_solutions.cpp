@@ -50,7 +50,7 @@ std::vector<std::shared_ptr<const PeerSolution>> read_solutions(const JsonNode& 
     return solutions;
   }
   for (const JsonNode& node : list.elements()) {
-    if (!node.is_object({{"name", "file"}, {"scene", "vary", "refine"}})) continue;
+    if (!node.is_object(keys_of(study_object("solution")))) continue;
     const auto called = node.find("name"), beside = node.find("file");
     if (!called || !beside) continue;
     PeerSolution one;

@@ -145,10 +145,7 @@ std::optional<Study> read_study(const std::string& file, Diagnostics& diagnostic
                std::filesystem::path(file).filename().string() + "\"");
     return std::nullopt;
   }
-  if (!root.is_object({{},
-                       {"scene", "scenes", "$schema", "title", "methods", "vary", "refine", "reference", "errors",
-                        "accuracy", "timing", "error_budget", "solutions"}}))
-    return std::nullopt;
+  if (!root.is_object(keys_of(study_object("study")))) return std::nullopt;
   if (const auto schema = root.find("$schema")) schema->text();
   if (const auto title = root.find("title")) study.title = title->text().value_or("");
   study.scenes = read_scenes(file, root, diagnostics);

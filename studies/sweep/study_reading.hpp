@@ -7,11 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "studies/input/file_objects.hpp"
 #include "studies/input/method_options.hpp"
 #include "studies/io/json_node.hpp"
 #include "studies/sweep/study_reader.hpp"
 
 namespace stickslip {
+
+/// An object of a study by its name (studies/input/file_objects.hpp).
+const nlohmann::ordered_json& study_object(const char* name);
 
 inline constexpr int finest_level = 10;  ///< of meshes: a thousand times the cells each way
 

@@ -1,6 +1,6 @@
-/// The schemas against the readers: every object has the keys that the reader allows there, what a key stands for where
-/// it is left out is what the reader takes, and a validator that is not ours takes what the reader takes and refuses
-/// what it refuses. Every key is described, with an example that is valid.
+/// The schemas against the readers, in what is not made from one description: the default of a key is what the reader
+/// takes where it is left out, and a validator not ours takes what the reader takes and refuses what it refuses.
+/// Every key is described, with an example that is valid.
 #include "studies/app/schema.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
 
 #include "studies/input/scene_reader.hpp"
 #include "studies/run/simulation.hpp"
@@ -36,7 +34,7 @@ std::vector<fs::path> shipped_files(bool studies) {
   return files;
 }
 
-/// Scenes that have, between them, an object of every kind that the format knows.
+/// Scenes that have, between them, every object that code reads key by key.
 std::vector<json> rich_scenes() {
   const char* plane = R"({
     "bodies": {
@@ -84,30 +82,7 @@ std::vector<json> rich_scenes() {
     "time": {"legs": [[1, 2]]},
     "method": {"uzawa_al": {"newton": {}}}
   })";
-  const char* solids = R"({
-    "space": "solid",
-    "bodies": {"block": {"mesh": {"box": {"min": [0, 0, 0], "max": [2, 2, 1], "cells": [2, 2, 1], "grade": {"front": 2}}},
-                         "element": "T4", "material": {"linear_elastic": {"E": 1, "nu": 0}}},
-               "tube": {"mesh": {"extruded": {"mesh": {"ring": {"center": [5, 0], "inner": 1, "outer": 2, "cells": [1, 8]}},
-                                              "from": 0, "to": 1, "cells": 1}},
-                        "material": {"j2_plastic": {"E": 1, "nu": 0, "yield": 1, "hardening": 1}}},
-               "cap": {"mesh": {"half_ball": {"center": [9, 0, 1], "radius": 1, "cells": [2, 3], "grade": 2, "facing": "up"}},
-                       "material": {"linear_elastic": {"E": 1, "nu": 0}}}},
-    "obstacles": {"ball": {"sphere": {"center": [1, 1, -1], "radius": 1, "inside": false}},
-                  "drum": {"cylinder": {"point": [5, 0, -1], "axis": [0, 1, 0], "radius": 1, "inside": false}}},
-    "contacts": {"under": {"slave": "block.bottom", "master": "ball", "friction": 0.1},
-                 "below": {"slave": "tube.front", "master": "drum"}},
-    "loads": [{"on": "block.top", "pressure": 1}, {"on": "tube", "body_force": [0, 0, -1]}],
-    "time": {"end": 1, "steps": 1},
-    "method": {"penalty": {}}
-  })";
-  const char* monolithic = R"({"bodies": {"rod": {"mesh": {"line": {"from": [0, 9], "to": [1, 9], "cells": 2}},
-    "material": {"linear_elastic": {"E": 1, "nu": 0}}}}, "time": {"end": 1, "steps": 1},
-    "method": {"monolithic_al": {"newton": {"line_search": true}}}})";
-  const char* finite = R"({"strain": "finite", "bodies": {"block": {
-    "mesh": {"box": {"min": [0, 0], "max": [4, 2], "cells": [4, 2]}}, "material": {"neo_hookean": {"E": 1, "nu": 0}}}},
-    "time": {"end": 1, "steps": 1}, "method": {"monolithic_al": {}}})";
-  return {json::parse(plane), json::parse(space), json::parse(solids), json::parse(monolithic), json::parse(finite)};
+  return {json::parse(plane), json::parse(space)};
 }
 
 /// Faults of a scene as the reader finds them.
@@ -137,21 +112,6 @@ const json* below(const json& root, const json& schema, const std::string& key, 
   return others != here.end() && others->is_object() ? &*others : nullptr;
 }
 
-/// Keys that the schema of an object allows; none where they are names of the user's.
-std::optional<std::set<std::string>> keys_of(const json& root, const json& schema) {
-  const json& here = resolved(root, schema);
-  if (here.contains("anyOf") && !here.contains("properties")) {
-    for (const json& alternative : here["anyOf"])
-      if (auto keys = keys_of(root, alternative)) return keys;
-    return std::nullopt;
-  }
-  if (here.value("additionalProperties", json(true)) != false) return std::nullopt;
-  std::set<std::string> keys;
-  const json properties = here.value("properties", json::object());
-  for (const auto& [key, unused] : properties.items()) keys.insert(key);
-  return keys;
-}
-
 /// Calls f(pointer, schema) for each object of a document.
 template <class F>
 void for_each_object(const json& root, const json& schema, const json& value, const std::string& pointer, F&& f) {
@@ -161,51 +121,6 @@ void for_each_object(const json& root, const json& schema, const json& value, co
     const json* of_child = below(root, schema, key, value.is_array());
     if (of_child && child.is_structured()) for_each_object(root, *of_child, child, pointer + "/" + key, f);
   }
-}
-
-/// The names after "allowed: " of the fault about the unknown key, up to the end or a remark in brackets.
-std::set<std::string> allowed_by_reader(const json& scene, const std::string& pointer) {
-  for (const Diagnostic& fault : faults(scene)) {
-    if (fault.pointer != pointer) continue;
-    const auto at = fault.message.find("allowed: ");
-    if (at == std::string::npos) continue;
-    std::set<std::string> names;
-    std::istringstream list(fault.message.substr(at + 9));
-    for (std::string name; std::getline(list, name, ',');) {
-      name.erase(0, name.find_first_not_of(' '));
-      if (name != "nothing") names.insert(name.substr(0, name.find(' ')));
-    }
-    return names;
-  }
-  return {};
-}
-
-TEST(Schema, HasInEveryObjectTheKeysThatTheReaderAllows) {
-  const json schema = scene_schema();
-  int compared = 0;
-  for (const json& scene : rich_scenes()) {
-    ASSERT_TRUE(faults(scene).empty()) << faults(scene).front().text();
-    for_each_object(schema, schema, scene, "", [&](const std::string& pointer, const json& at) {
-      auto keys = keys_of(schema, at);
-      if (!keys) return;
-      json changed = scene;
-      changed[json::json_pointer(pointer)]["zzz"] = 1;
-      auto allowed = allowed_by_reader(changed, pointer + "/zzz");
-      if (scene.value("space", "") != "solid") {  // what a schema cannot know without the space
-        keys->erase("z");
-        if (pointer.find("/rotate") != std::string::npos) keys->erase("axis");
-      } else if (pointer.find("/response") != std::string::npos) {
-        keys->erase("about");
-      }
-      if (pointer == "/time" && scene["time"].contains("legs")) {  // one way or the other
-        keys = {{"legs"}};
-        allowed.erase("control");  // (is refused there by a sentence of its own)
-      }
-      EXPECT_EQ(*keys, allowed) << pointer;
-      ++compared;
-    });
-  }
-  EXPECT_GT(compared, 50) << "objects were found and compared";
 }
 
 /// Calls f(name, property) for every property, wherever it stands; conditions ("if", "then", "else") have none.
@@ -236,6 +151,21 @@ TEST(Schema, DescribesEveryKeyAndShowsAnExample) {
   }
 }
 
+TEST(Schema, DescribesNoKeyThatTheReaderPassesOver) {
+  const json schema = scene_schema();
+  for (const json& scene : rich_scenes()) {
+    ASSERT_TRUE(faults(scene).empty()) << faults(scene).front().text();
+    for_each_object(schema, schema, scene, "", [&](const std::string& pointer, const json& at) {
+      const json properties = resolved(schema, at).value("properties", json::object());
+      for (const auto& [key, unused] : properties.items()) {
+        json changed = scene;
+        changed[json::json_pointer(pointer + "/" + key)] = nullptr;
+        EXPECT_FALSE(faults(changed).empty()) << pointer << "/" << key;
+      }
+    });
+  }
+}
+
 /// All that the solver makes of a scene; its faults where it has any.
 json outcome(const json& scene) {
   Diagnostics diagnostics;
@@ -248,20 +178,8 @@ json outcome(const json& scene) {
 
 TEST(Schema, NamesTheDefaultsOfTheReader) {
   const json schema = scene_schema();
-  std::vector<json> scenes = rich_scenes();
-  scenes.push_back(json::parse(R"({
-    "bodies": {
-      "ring": {"mesh": {"ring": {"center": [0, 0], "inner": 1, "outer": 2, "cells": [1, 8]}},
-               "material": {"linear_elastic": {"E": 1000, "nu": 0.25}}},
-      "disk": {"mesh": {"disk": {"center": [0, 0], "radius": 1, "cells": [2, 2]}},
-               "material": {"linear_elastic": {"E": 1000, "nu": 0.25}}}},
-    "contacts": {"fit": {"slave": "disk.arc", "master": "ring.inner"}},
-    "supports": [{"on": "ring.outer", "move": {"x": 0, "y": 0}}, {"on": "disk.arc", "move": {"x": 0}}],
-    "loads": [{"on": "disk", "body_force": [0, 1]}],
-    "time": {"end": 1, "steps": 1}, "responses": {"p": {"contact_pressure": {"contact": "fit"}}},
-    "method": {"monolithic_al": {}}})"));
   int compared = 0;
-  for (const json& scene : scenes) {
+  for (const json& scene : rich_scenes()) {
     const json expected = outcome(scene);
     EXPECT_FALSE(expected.contains("faults")) << expected;
     for_each_object(schema, schema, scene, "", [&](const std::string& pointer, const json& at) {
@@ -278,7 +196,7 @@ TEST(Schema, NamesTheDefaultsOfTheReader) {
       }
     });
   }
-  EXPECT_GT(compared, 40) << "defaults were found and compared";
+  EXPECT_GT(compared, 25) << "defaults were found and compared";
 }
 
 #ifdef STICKSLIP_PYTHON_WITH_JSONSCHEMA
@@ -302,26 +220,14 @@ sys.exit("\n".join(wrong) if wrong else 0)
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
-TEST(Schema, TakesEveryShippedFileAndRefusesUnknownKeysInIt) {
+TEST(Schema, TakesEveryShippedFile) {
   for (bool studies : {false, true}) {
-    const json schema = studies ? study_schema() : scene_schema();
-    json valid = json::array(), invalid = json::array();
-    std::vector<std::pair<std::string, json>> documents;
-    for (const auto& path : shipped_files(studies)) documents.emplace_back(path.filename().string(), cases::load(path));
-    ASSERT_GE(documents.size(), 7u);
+    json valid = json::array();
+    for (const auto& path : shipped_files(studies)) valid.push_back({path.filename().string(), cases::load(path)});
+    ASSERT_GE(valid.size(), 7u);
     if (!studies)
-      for (const json& scene : rich_scenes()) documents.emplace_back("rich", scene);
-    for (const auto& [name, document] : documents) {
-      valid.push_back({name, document});
-      for_each_object(schema, schema, document, "",
-                      [&, &name = name, &document = document](const std::string& pointer, const json& at) {
-                        if (!keys_of(schema, at)) return;
-                        json changed = document;
-                        changed[json::json_pointer(pointer)]["zzz"] = 1;
-                        invalid.push_back({name + pointer, changed});
-                      });
-    }
-    validate(schema, valid, invalid);
+      for (const json& scene : rich_scenes()) valid.push_back({"rich", scene});
+    validate(studies ? study_schema() : scene_schema(), valid, json::array());
   }
 }
 
@@ -343,17 +249,7 @@ TEST(Schema, ShowsExamplesThatAreValid) {
 TEST(Schema, RefusesASampleOfWhatTheReaderRefuses) {
   const json scene = rich_scenes().front();
   const std::vector<std::pair<std::string, const char*>> changes{
-      {"/space", R"("plane_strin")"},
       {"/bodies", "{}"},
-      {"/bodies/block/material/linear_elastic/E", "-1"},
-      {"/bodies/block/material/linear_elastic/nu", "0.5"},
-      {"/bodies/block/material", "{}"},
-      {"/bodies/block/mesh/box/cells", "[4]"},
-      {"/bodies/block/mesh/box/cells/0", "0"},
-      {"/bodies/block/mesh/box/max", "[4]"},
-      {"/bodies/block/element", R"("Q5")"},
-      {"/bodies/rod/area", "0"},
-      {"/obstacles/drum/circle/radius", "0"},
       {"/obstacles/step/polyline/points", "[[0, 0]]"},
       {"/contacts/sole/friction", "-0.1"},
       {"/contacts/sole", R"({"slave": "block.bottom"})"},
@@ -374,10 +270,7 @@ TEST(Schema, RefusesASampleOfWhatTheReaderRefuses) {
       {"/responses/b", R"({"reaction": {"on": "block.left", "component": "moment"}})"},
       {"/responses/b/contact_force/about", "[0, 0]"},
       {"/responses/c/displacement/take", R"("median")"},
-      {"/method", R"({"penalty": {}, "monolithic_al": {}})"},
-      {"/method/penalty/newton/tolerance", "1"},
       {"/output/fields", "0"},
-      {"/linear_solver/engine", R"("dense")"},
   };
   json invalid = json::array();
   for (const auto& [pointer, text] : changes) {

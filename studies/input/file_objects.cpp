@@ -1,0 +1,63 @@
+#include "studies/input/file_objects.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "studies/input/ranges.hpp"
+
+namespace stickslip {
+namespace {
+
+using Schema = nlohmann::ordered_json;
+
+/// A description with the objects that it names put in their places.
+Schema whole(const Schema& part, const Schema& objects) {
+  Schema made = part;
+  if (part.is_object() && part.contains("$object")) {
+    made = {{"type", "object"}, {"additionalProperties", false}};
+    made.update(objects.at(part["$object"].get<std::string>()));
+    for (const auto& [key, own] : part.items())
+      if (key != "$object") made[key] = own;
+  }
+  if (made.is_structured())
+    for (Schema& inner : made) inner = whole(inner, objects);
+  return made;
+}
+
+}  // namespace
+
+Schema objects_of(const char* text) {
+  const Schema objects = Schema::parse(text);
+  return whole(objects, objects);
+}
+
+Keys keys_of(const Schema& object) { return keys_of(object, object.value("required", std::vector<std::string>())); }
+
+Keys keys_of(const Schema& object, const std::vector<std::string>& required) {
+  Keys keys{required};
+  for (const auto& [key, unused] : object.at("properties").items())
+    if (std::ranges::count(required, key) == 0) keys.optional.push_back(key);
+  return keys;
+}
+
+std::optional<std::pair<std::string, JsonNode>> read_kind(const JsonNode& node, const Schema& object) {
+  std::vector<std::string> kinds;
+  for (const Schema& kind : object.at("oneOf")) kinds.push_back(kind.at("required").front());
+  return node.kind(kinds, {}, keys_of(object, kinds).optional);
+}
+
+std::vector<std::string> choices_of(const Schema& object, const char* key) {
+  return object.at("properties").at(key).at("enum");
+}
+
+Number read_number(const JsonNode& node, const Schema& object, const char* key, SceneReading& reading) {
+  const Schema& own = object.at("properties").at(key);
+  for (const Range range : {Range::positive, Range::not_negative, Range::any}) {
+    Schema within = own;
+    within.update(schema_of(range));
+    if (within == own) return reading.optional(node, key, own.at("default"), rule_of(range));
+  }
+  throw std::logic_error(std::string("the range of ") + key + " has no rule");
+}
+
+}  // namespace stickslip
