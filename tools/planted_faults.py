@@ -33,6 +33,8 @@ FAULTS = [
      "2 / (1 + <<<std::floor(std::max(before, after) / std::min(before, after) + rest)>>>)", "1.0"),
     ("foot that does not bend", "core/contact/foot_in_plane.hpp",
      "T(square - <<<dot(off, sum(w.bend))>>>) : square);", "T(0)"),
+    ("foot that is lost where slopes grow fast", "core/contact/search_in_plane.cpp",
+     "off.dot(slope) / (<<<is_minimum>>> ? falls : metric);", "true"),
     ("corner that takes the first facet", "core/contact/search_in_plane.cpp",
      "if (<<<end == 1 ? side <= 0 : side >= 0>>>) return foot;", "true"),
     ("face that looks the same way", "core/contact/search_in_plane.cpp",

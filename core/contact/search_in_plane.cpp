@@ -129,8 +129,10 @@ Facing PatchSearch<2>::newton_foot(Facing from, const Vec<double, 2>& x, int hop
     const Vec<double, 2> off = detail::off_place<double, double>(patch, w.value, at_start(x),
                                                                  detail::vertices_of<double, double>(patch, start));
     const double metric = slope.squaredNorm(), falls = metric - off.dot(bend);
-    if (!(falls > 1e-8 * metric)) return {};  // x is at or beyond the centre of curvature
-    const double whole = off.dot(slope) / falls;
+    // At the foot: x is nearer than the centre of curvature. Before it, `off` has a part along the curve, and where the
+    // slope grows fast along it, as behind a short facet, `falls` says nothing. Then the step leaves `bend` out.
+    const bool is_minimum = falls > 1e-8 * metric;
+    const double whole = off.dot(slope) / (is_minimum ? falls : metric);
     const double move = patch.is_smooth() ? std::clamp(whole, -longest, longest) : whole;
     xi += move;
     const bool settled = std::abs(move) <= 1e-9;
@@ -143,6 +145,7 @@ Facing PatchSearch<2>::newton_foot(Facing from, const Vec<double, 2>& x, int hop
       continue;
     }
     if (!settled) continue;
+    if (!is_minimum) return {};
     const Facing foot{at, {xi, 0}};
     return all > 0 && is_past_joint<2>(patch, foot.at, past_end_of_surface) ? Facing{} : foot;
   }

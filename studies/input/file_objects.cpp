@@ -10,25 +10,26 @@ namespace {
 
 using Schema = nlohmann::ordered_json;
 
-/// A description with the objects that it names put in their places.
-Schema whole(const Schema& part, const Schema& objects) {
-  Schema made = part;
+/// Puts the objects that a description names in their places.
+void make_whole(Schema& part, const Schema& objects) {
+  if (!part.is_structured()) return;
   if (part.is_object() && part.contains("$object")) {
-    made = {{"type", "object"}, {"additionalProperties", false}};
+    Schema made{{"type", "object"}, {"additionalProperties", false}};
     made.update(objects.at(part["$object"].get<std::string>()));
-    for (const auto& [key, own] : part.items())
-      if (key != "$object") made[key] = own;
+    for (auto& [key, own] : part.items())
+      if (key != "$object") made[key] = std::move(own);
+    part = std::move(made);
   }
-  if (made.is_structured())
-    for (Schema& inner : made) inner = whole(inner, objects);
-  return made;
+  for (Schema& inner : part) make_whole(inner, objects);
 }
 
 }  // namespace
 
 Schema objects_of(const char* text) {
   const Schema objects = Schema::parse(text);
-  return whole(objects, objects);
+  Schema whole = objects;
+  make_whole(whole, objects);
+  return whole;
 }
 
 Keys keys_of(const Schema& object) { return keys_of(object, object.value("required", std::vector<std::string>())); }

@@ -6,6 +6,8 @@
 ///   bar:  N = E A e,  e = (T.d + d.d / 2) / L^2 at finite strain, T.d / L^2 at small;  spring: f = K (u - u_anchor)
 #pragma once
 
+#include <fmt/format.h>
+
 #include "studies/verify/scene.hpp"
 
 namespace stickslip::verify {

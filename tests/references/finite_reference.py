@@ -19,8 +19,8 @@ the other one. That is an error, as is any step for which none is found.
      states of the real one. `differences` takes them by differences of the whole path, states free.
 
 Curves: straight facets, a point belonging to the facet on its side of the bisectors through the facet's ends, beyond
-which the facet's line goes on; Catmull-Rom; uniform cubic B-spline. A ghost node 2 y1 - y2 stands beyond a free end.
-A point more than a hundredth of a facet past a free end has no contact.
+which the facet's line goes on; Catmull-Rom of facets of one length; uniform cubic B-spline. A ghost node 2 y1 - y2
+stands beyond a free end. A point more than a hundredth of a facet past a free end has no contact.
 
 In plane stress the stretch of the thickness is sought by halving, point by point, until the laws of three dimensions
 leave no stress across; nothing here knows a law of plane stress.

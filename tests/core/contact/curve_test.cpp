@@ -142,6 +142,25 @@ TEST(Curve, OfAShortRampBetweenLongFlatsGoesUpSteadily) {
     }
 }
 
+TEST(Curve, HasFeetAllAlongALongPatchBesideAShortOne) {  // its slope grows fast from the short one on
+  for (const double ramp : {0.5, 0.05, 0.005}) {
+    Eigen::Matrix2Xd profile(2, 4);
+    profile << 4, 1.2 + ramp, 1.2, -3, 0.1 * ramp, 0.1 * ramp, 0, 0;
+    const auto where = [&](int v) -> Place { return profile.col(v); };
+    const auto patches = make_surface<2>({{0, 1}, {1, 2}, {2, 3}}, Smoothing::catmull_rom, 30, profile);
+    const SurfaceSearch<2> search(patches, profile);
+    for (int k = 1; k < 140; ++k)
+      for (const double height : {-0.02 * ramp, 0.0, 0.5}) {
+        const Place x(-3 + 0.05 * k, (-3 + 0.05 * k > 1.2 ? 0.1 * ramp : 0) + height);
+        if (x[0] > 1.2 - ramp && x[0] < 1.2 + 2 * ramp) continue;
+        const Facing facing = search.facing(x, Place::Zero());
+        ASSERT_NE(facing.patch, no_patch) << ramp << " " << x.transpose();
+        const auto foot = foot_on_patch<double>(patches[facing.patch], facing.at, x, where);
+        EXPECT_NEAR(foot.gap, height, 0.01 * ramp) << x.transpose();  // flats are left by 0.003 of the ramp
+      }
+  }
+}
+
 TEST(Curve, GoesStraightAtFreeEndsAndKeepsCorners) {
   Eigen::Matrix2Xd square(2, 8);
   square << 0, 1, 2, 2, 2, 1, 0, 0, 0, 0, 0, 1, 2, 2, 2, 1;
