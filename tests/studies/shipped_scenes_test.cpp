@@ -163,6 +163,42 @@ TEST(ShippedScenes, OfATurnedRingHasTheTorqueOfFrictionAndOnFacetsNoEquilibrium)
   EXPECT_LE(on_facets.trajectory.counters.newton, 3000);  // what 1000 displacements have, and the last equilibrium
 }
 
+TEST(ShippedStudies, OfADrumHoldSurfacesOfFacetsAgainstTheRoundDrum) {
+  const json facets = cases::load(cases::shipped / "drum.json");
+  const json values = cases::load(cases::shipped / "drum.study.json")["reference"][0]["values"];
+  const auto run = [&](const json& contact, bool is_round) {
+    json scene = facets;
+    for (const char* key : {"surface", "discretization"}) scene["contacts"]["sole"].erase(key);
+    scene["contacts"]["sole"].update(contact);
+    if (is_round) scene["obstacles"]["drum"] = {{"circle", {{"center", {0, -4}}, {"radius", 4}}}};
+    auto result = cases::run(scene, {{"monolithic_al", json::object()}}, cases::shipped / "drum.json");
+    EXPECT_TRUE(is_converged(result.status())) << contact << result.message();
+    return result;
+  };
+  const auto is_off = [&](const CaseResult& result, const std::string& what) {
+    return std::abs(value_of(result, what) / values[what].get<double>() - 1);
+  };
+  const auto round = run({{"discretization", "node"}}, true), smooth = run({{"discretization", "node"}}, false),
+             on_facets = run({{"discretization", "node"}, {"surface", "faceted"}}, false),
+             segments = run({{"discretization", "segment"}}, false);
+  for (const auto& [what, value] : values.items()) {
+    EXPECT_LE(is_off(round, what), 1e-9) << what;     // twelve digits stand in the file
+    EXPECT_LE(is_off(smooth, what), 1.5e-3) << what;  // fourth order: of facets of 10 degrees
+  }
+  EXPECT_GT(is_off(on_facets, "pull"), 0.05);  // facets are up to 0.015 inside of the circle, the pad 0.1
+  EXPECT_GT(is_off(segments, "pull"), 0.05);
+  // the pull has one crest over the round drum and over the smooth one; from facet to facet it ripples
+  const auto crests = [](const CaseResult& result) {
+    const auto pull = history(result, "pull");
+    int count = 0;
+    for (std::size_t n = 1; n + 1 < pull.size(); ++n) count += pull[n] > pull[n - 1] && pull[n] > pull[n + 1];
+    return count;
+  };
+  EXPECT_EQ(crests(round), 1);
+  EXPECT_EQ(crests(smooth), 1);
+  EXPECT_GT(crests(on_facets), 1);
+}
+
 TEST(ShippedScenes, OfAFoldedArchDoesNotHangOnItsSteps) {
   // 45 steps and 90: no step is cut; force and crown differ by 0.14 % at most (B4 asks for 2 %)
   json scene = cases::load(cases::shipped / "arch.json");
