@@ -335,7 +335,7 @@ class Master {
         place = {other, end ? 1.0 : 0.0};
       }
       if ((place.xi > 0 && place.xi < 1) || patches[place.patch].goes_on(end)) return place;
-      for (int k = 0; k < 20; ++k) {
+      for (int k = 0; k < 20 && std::abs(place.xi - 0.5) < 1.5; ++k) {  // (a cubic far past its end overflows)
         const Vec3 off = x - position(place), slope = position(place, 1);
         place.xi += off.dot(slope) / (slope.squaredNorm() - off.dot(position(place, 2)));
       }

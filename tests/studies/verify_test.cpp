@@ -238,6 +238,18 @@ TEST(Verify, HoldsForEachSurfaceAndDiscretization) {
   }
 }
 
+TEST(Verify, HoldsOfAPointFarPastTheEndOfASmoothMaster) {
+  const json scene = json::parse(R"({
+    "strain": "finite",
+    "bodies": {"pin": {"mesh": {"point": {"at": [-0.3, 0.95]}},
+                       "material": {"grounded_spring": {"stiffness": [[1000, 0], [0, 1000]]}}}},
+    "obstacles": {"slab": {"polyline": {"points": [[0, 1], [2, 1]]}}},
+    "contacts": {"t": {"slave": "pin.node", "master": "slab", "friction": 0.4, "surface": "smooth"}},
+    "supports": [{"on": "pin.anchor", "move": {"x": [[0, 0], [1, 6e8]], "y": 0}}],
+    "time": {"end": 1, "steps": 1}})");
+  for (const auto& method : {"penalty", "uzawa_al", "monolithic_al"}) expect_holds(solve(scene, method));
+}
+
 /// Bent sides are integrated over what faces one facet, whatever ends behind that.
 TEST(Verify, HoldsWhereAnotherWallIsBehindTheMaster) {
   for (const auto& method : {"penalty", "uzawa_al", "monolithic_al"})
