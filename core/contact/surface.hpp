@@ -10,7 +10,8 @@
 ///   B-spline      the vertices are control points, which the surface misses by O(h^2); the curvature is continuous too
 ///                 (in space where four quadrilaterals meet at each node)
 ///
-/// The weights depend on how the facets are joined and not on where they are. A smooth surface is not smooth at corners
+/// The weights depend on how the facets are joined, and those of Catmull-Rom curves in the plane on the ratios of the
+/// facets' lengths at the start, but not on where they are. A smooth surface is not smooth at corners
 /// and creases, where facets turn by more than an angle that is given.
 ///
 /// What a contact point needs of a surface has the same name in both dimensions:

@@ -86,7 +86,7 @@ class NewtonStop {
     if (rests_ && history.size() == 1) return NewtonEnd{Status::converged_at_roundoff, "nothing but rounding moves it"};
     const auto fell = [&] { return 2 * residuals.largest() <= history[history.size() - 2].residual; };
     if (!repeats_ && (steady_ < 2 || fell())) return std::nullopt;
-    if (residuals.is_forceless()) return NewtonEnd{};
+    if (residuals.forces_are_rounding()) return NewtonEnd{};
     return NewtonEnd{Status::converged_at_roundoff, "the residual stopped falling at the level of rounding"};
   }
 

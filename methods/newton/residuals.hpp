@@ -28,8 +28,8 @@ struct Residuals {
   double floor_equilibrium = 0, floor_length = 0, floor_traction = 0;  ///< residuals that rounding alone may leave
   double largest() const { return larger(larger(equilibrium, normal), tangential); }
   bool finite() const { return std::isfinite(equilibrium) && std::isfinite(normal) && std::isfinite(tangential); }
-  /// The rounding of equilibrium is as large as all forces.
-  bool is_forceless() const { return floor_equilibrium >= 1; }
+  /// The largest force of the run and of this iterate is no more than rounding.
+  bool forces_are_rounding() const { return floor_equilibrium >= 1; }
   bool within(double tolerance) const { return finite() && largest() <= tolerance; }
   bool within_rounding(double tolerance) const {
     return finite() && equilibrium <= std::max(tolerance, floor_equilibrium) &&

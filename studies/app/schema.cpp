@@ -30,8 +30,8 @@ Schema document(const char* title, const Schema& object, const Schema& definitio
 }  // namespace
 
 Schema scene_schema() {
-  Schema definitions = scene_object("common definitions");
-  definitions.update(scene_object("definitions of scenes"));
+  Schema definitions = whole_object(scene_objects(), "common definitions");
+  definitions.update(whole_object(scene_objects(), "definitions of scenes"));
   definitions["mesh"] = mesh_schema();
   definitions["plane_mesh"] = plane_mesh_schema();
   Schema materials;
@@ -39,7 +39,7 @@ Schema scene_schema() {
   definitions["material"] = one_of(materials);
   definitions["response"] = response_schema();
   definitions["method"] = method_schema(OptionLists::refused);
-  Schema schema = document("stickslip scene", scene_object("scene"), definitions);
+  Schema schema = document("stickslip scene", whole_object(scene_objects(), "scene"), definitions);
   Schema& obstacle = schema["properties"]["obstacles"]["additionalProperties"];
   obstacle = with_kinds(obstacle, obstacle_kinds());
   Schema& contact = schema["properties"]["contacts"]["additionalProperties"]["properties"];
@@ -50,10 +50,10 @@ Schema scene_schema() {
 }
 
 Schema study_schema() {
-  Schema definitions = scene_object("common definitions");
+  Schema definitions = whole_object(scene_objects(), "common definitions");
   definitions["method"] = method_schema(OptionLists::refused);
   definitions["swept_method"] = method_schema(OptionLists::swept);
-  Schema schema = document("stickslip study", study_object("study"), definitions);
+  Schema schema = document("stickslip study", whole_object(study_objects(), "study"), definitions);
   schema["properties"]["reference"]["items"]["properties"]["analytic"]["enum"] = analytic_names();
   schema["properties"][TimingObject::key] = schema_of_object<TimingObject>();
   schema["properties"]["error_budget"]["anyOf"][1]["properties"] = schema_of_keys<ErrorBudgetObject>().properties;

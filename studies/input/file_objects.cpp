@@ -25,9 +25,8 @@ void make_whole(Schema& part, const Schema& objects) {
 
 }  // namespace
 
-Schema objects_of(const char* text) {
-  const Schema objects = Schema::parse(text);
-  Schema whole = objects;
+Schema whole_object(const Schema& objects, const char* name) {
+  Schema whole = objects.at(name);
   make_whole(whole, objects);
   return whole;
 }

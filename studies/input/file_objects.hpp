@@ -14,11 +14,12 @@
 
 namespace stickslip {
 
-/// An object of a scene by its name in scene_objects.cpp; those of studies stand in studies/sweep/study_objects.cpp.
-const nlohmann::ordered_json& scene_object(const char* name);
+/// All objects of a scene by name; those of studies are study_objects() (studies/sweep/study_reading.hpp).
+const nlohmann::ordered_json& scene_objects();
+inline const nlohmann::ordered_json& scene_object(const char* name) { return scene_objects().at(name); }
 
-/// Objects by name, as `text` describes them.
-nlohmann::ordered_json objects_of(const char* text);
+/// One of these objects, with those that it names put in their places.
+nlohmann::ordered_json whole_object(const nlohmann::ordered_json& objects, const char* name);
 
 /// The keys that an object must have and may have; the same where it must have these.
 Keys keys_of(const nlohmann::ordered_json& object);

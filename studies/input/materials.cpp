@@ -74,7 +74,8 @@ void read_hardening_table(const JsonNode& node, J2Plastic& material, bool yields
 }
 
 std::optional<Material> read_j2(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object(keys_of(j2_schema()))) return std::nullopt;
+  static const Keys keys = keys_of(j2_schema());
+  if (!node.is_object(keys)) return std::nullopt;
   J2Plastic material{reading.required(node, "E", positive), reading.required(node, "nu", poisson_ratio), 0.0, 0.0};
   const auto yield = node.find("yield"), hardening = node.find("hardening");
   if (yield) material.yield = reading.number(*yield, positive);
@@ -88,7 +89,8 @@ std::optional<Material> read_j2(const JsonNode& node, SceneReading& reading) {
 }
 
 std::optional<Material> read_spring(const JsonNode& node, SceneReading& reading) {
-  if (!node.is_object(keys_of(spring_schema()))) return std::nullopt;
+  static const Keys keys = keys_of(spring_schema());
+  if (!node.is_object(keys)) return std::nullopt;
   const auto matrix = node.find("stiffness");
   if (!matrix) return std::nullopt;
   const int d = reading.dimension();

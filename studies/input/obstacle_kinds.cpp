@@ -25,7 +25,8 @@ Schema polyline_schema() {
 
 std::optional<RigidSurface> read_polyline(const JsonNode& node, SceneReading& reading) {
   constexpr const char* allowed = "an array of two points [x, y] or more, the solid on the right of the way along them";
-  if (!node.is_object(keys_of(polyline_schema()))) return std::nullopt;
+  static const Keys keys = keys_of(polyline_schema());
+  if (!node.is_object(keys)) return std::nullopt;
   const auto points = node.find("points");
   if (!points) return std::nullopt;
   if (!points->value().is_array() || points->value().size() < 2) {

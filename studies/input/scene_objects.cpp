@@ -242,9 +242,9 @@ constexpr const char* scene_text = R"json({
 
 }  // namespace
 
-const nlohmann::ordered_json& scene_object(const char* name) {
-  static const auto all = objects_of(scene_text);
-  return all.at(name);
+const nlohmann::ordered_json& scene_objects() {
+  static const auto all = nlohmann::ordered_json::parse(scene_text);
+  return all;
 }
 
 }  // namespace stickslip

@@ -89,9 +89,9 @@ constexpr const char* study_text = R"json({
 
 }  // namespace
 
-const nlohmann::ordered_json& study_object(const char* name) {
-  static const auto all = objects_of(study_text);
-  return all.at(name);
+const nlohmann::ordered_json& study_objects() {
+  static const auto all = nlohmann::ordered_json::parse(study_text);
+  return all;
 }
 
 }  // namespace stickslip

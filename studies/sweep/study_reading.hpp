@@ -14,8 +14,9 @@
 
 namespace stickslip {
 
-/// An object of a study by its name (studies/input/file_objects.hpp).
-const nlohmann::ordered_json& study_object(const char* name);
+/// The objects of a study by name (studies/input/file_objects.hpp).
+const nlohmann::ordered_json& study_objects();
+inline const nlohmann::ordered_json& study_object(const char* name) { return study_objects().at(name); }
 
 inline constexpr int finest_level = 10;  ///< of meshes: a thousand times the cells each way
 
