@@ -13,6 +13,7 @@ namespace stickslip {
 struct Cylinder {
   static constexpr bool is_in_plane = false, is_in_space = true, is_flat = false;
   static constexpr const char *key = "cylinder", *about = "a drum without end, or a bore; in space alone";
+  static constexpr const char* if_turned = R"(look at "inside" of the cylinder: true is a bore, solid outside)";
   std::vector<Number> point, axis;
   Number radius;
   bool inside = false;

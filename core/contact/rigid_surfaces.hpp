@@ -1,8 +1,8 @@
 /// The list of rigid surfaces. Each has a file of its own, with
 ///
 ///   its description    for the scene: its keys (core/algebra/described.hpp); whether it is made for the plane and for
-///                      space (is_in_plane, is_in_space); whether it is flat (is_flat); of one of the plane what to do
-///                      if its solid is on the wrong side (if_turned)
+///                      space (is_in_plane, is_in_space); whether it is flat (is_flat); what to do if its solid is on
+///                      the wrong side (if_turned)
 ///   against()          of (X, w, surface, numbers): the geometry of the place X + w. Its gap is that of X and what the
 ///                      displacement w adds, so that a small displacement keeps its digits far from the origin
 ///   ambiguous_at()     only if it has a place from which no part of it is nearer than another
@@ -62,14 +62,9 @@ inline bool is_flat(const RigidSurface& surface) {
   return std::visit([](const auto& shape) { return shape.is_flat; }, surface);
 }
 
-/// What to do if the solid of a surface is on the wrong side. pre: it is one of the plane.
+/// What to do if the solid of a surface is on the wrong side.
 inline std::string if_turned(const RigidSurface& surface) {
-  return std::visit(
-      []<class S>(const S&) -> std::string {
-        if constexpr (S::is_in_plane) return S::if_turned;
-        return {};
-      },
-      surface);
+  return std::visit([](const auto& shape) -> std::string { return shape.if_turned; }, surface);
 }
 
 /// Geometry of the place X + w against a surface. pre: it is no polyline.

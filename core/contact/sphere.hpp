@@ -13,6 +13,7 @@ struct Sphere {
   static constexpr bool is_in_plane = false, is_in_space = true, is_flat = false;
   static constexpr const char *key = "sphere", *about = "a ball, or a cup; in space alone",
                               *example = R"({"center": [0, 0, 1], "radius": 1})";
+  static constexpr const char* if_turned = R"(look at "inside" of the sphere: true is a cup, solid outside)";
   std::vector<Number> center;
   Number radius;
   bool inside = false;

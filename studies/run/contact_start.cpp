@@ -10,6 +10,7 @@
 #include "core/model/stencil.hpp"
 #include "methods/stepping/free_bodies.hpp"
 #include "studies/run/contact_points.hpp"
+#include "studies/run/facing_sides.hpp"
 #include "studies/run/side_curve.hpp"
 
 namespace stickslip {
@@ -71,6 +72,33 @@ std::map<std::string, double> least_gaps_of_open_rules(const CaseResult& result)
   return least;
 }
 
+/// What to do where no point of a contact, or of a rule, ever faces its master.
+std::string sides_to_take(const Problem& problem, const std::string& name) {
+  const auto& contacts = problem.model.scene.contacts;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (contacts[c].name != name) continue;
+    const auto sides = facing_sides(problem, static_cast<int>(c));
+    if (!sides || *sides == std::pair{contacts[c].slave, contacts[c].master}) continue;
+    return fmt::format("take {} as the slave and {} as the master, which face each other", sides->first, sides->second);
+  }
+  return "take the sides that face one another as slave and master: the far side of a body faces nothing, nor does one "
+         "that is inside of the other body";
+}
+
+/// What to do where points face their master and never touch it. `gap`: the least one, length.
+std::string ways_to_close(const Problem& problem, const std::string& name, double gap) {
+  constexpr double far = 10;  // sizes of the body: nothing moves as far
+  const auto& contacts = problem.model.scene.contacts;
+  const auto contact =
+      std::find_if(contacts.begin(), contacts.end(), [&](const auto& c) { return rule_of(c) == name; });
+  const auto& body = problem.model.bodies[problem.model.contact_sides[contact - contacts.begin()].slave.body];
+  const auto points = problem.slots.points.middleCols(body.first_node, body.mesh.node_count);
+  const double size = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+  if (size > 0 && gap > far * size)
+    return fmt::format("this is {:.2g} times the size of the slave's body: give all lengths in one unit", gap / size);
+  return "look at the gap at the start, the direction of loads and motions, and the side on which the master is solid";
+}
+
 }  // namespace
 
 std::string StartGaps::in_words() const {
@@ -128,14 +156,10 @@ std::vector<Warning> contacts_never_closed(const CaseResult& result) {
   for (const auto& [name, gap] : least_gaps_of_open_rules(result)) {
     const std::string nearest =
         std::isfinite(gap) ? fmt::format("the nearest is {:.3g} away at the least", gap) : "none ever faces the master";
-    const char* const remedy =
-        std::isfinite(gap)
-            ? "look at the gap at the start, the direction of loads and motions, and the side on which the "
-              "master is solid"
-            : "take the sides that face one another as slave and master: the far side of a body faces "
-              "nothing, nor does one that is inside of the other body";
-    warnings.push_back({WarningCode::never_closes, name, gap, remedy,
-                        fmt::format("{}: no point closes in any of {} steps; {}", name, result.steps.size(), nearest)});
+    warnings.push_back(
+        {WarningCode::never_closes, name, gap,
+         std::isfinite(gap) ? ways_to_close(*result.problem, name, gap) : sides_to_take(*result.problem, name),
+         fmt::format("{}: no point closes in any of {} steps; {}", name, result.steps.size(), nearest)});
   }
   return warnings;
 }

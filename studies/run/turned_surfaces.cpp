@@ -2,101 +2,137 @@
 
 #include <fmt/core.h>
 
-#include <map>
+#include <limits>
 
 #include "core/contact/surface_search.hpp"
 #include "core/model/pairing.hpp"
+#include "studies/run/facing_sides.hpp"
 #include "studies/run/side_curve.hpp"
 
 namespace stickslip {
 namespace {
 
-/// Geometry of the nearest place of an obstacle at the start: outward normal and gap; none past its free ends.
-std::optional<std::pair<PlanePlace, double>> start_against(const Problem& problem, const Obstacle& obstacle,
-                                                           const SideCurve& polyline, const SurfaceSearch<2>* search,
-                                                           const PlanePlace& x) {
-  if (!search) {
-    if (ambiguity(x, obstacle.shape, problem.slots.numbers)) return std::nullopt;
-    const auto at = against_rigid<double>(x, obstacle.shape, problem.slots.numbers);
-    return std::pair{PlanePlace(at.normal[0], at.normal[1]), at.gap};
+/// Cosine of two normals that count as alike, or as opposed: a side that is steeper may come to touch with its end.
+constexpr double alike_from = 0.5;
+
+/// An obstacle where it is at the start.
+class StartingObstacle {
+ public:
+  StartingObstacle(const Problem& problem, const Contact& contact, const Obstacle& obstacle)
+      : numbers_(problem.slots.numbers), shape_(obstacle.shape) {
+    if (!std::holds_alternative<Polyline>(shape_)) return;
+    polyline_ = curve_of_polyline(problem, obstacle, contact, 0);
+    search_.emplace(polyline_.patches, polyline_.places);
   }
-  const Facing facing = search->facing(x, PlanePlace::Zero());
-  if (facing.patch == no_patch) return std::nullopt;
-  const auto foot = foot_on_patch<double>(polyline.patches[facing.patch], facing.at, x, polyline.position());
-  return std::pair{foot.normal, foot.gap};
+
+  struct Seen {
+    Vector<double> normal;  ///< outward, of the nearest place of the obstacle
+    double gap = 0;
+    bool is_inside = false;  ///< of its solid, by more than rounding
+  };
+  /// From a place x; none past free ends, and where all places are equally near.
+  std::optional<Seen> from(const Vector<double>& x) const {
+    std::optional<Seen> seen;
+    if (search_) {
+      const PlanePlace place = x.head<2>();
+      const Facing facing = search_->facing(place, PlanePlace::Zero());
+      if (facing.patch == no_patch) return std::nullopt;
+      const auto foot = foot_on_patch<double>(polyline_.patches[facing.patch], facing.at, place, polyline_.position());
+      seen = {foot.normal, foot.gap};
+    } else {
+      if (ambiguity(x, shape_, numbers_)) return std::nullopt;
+      const auto at = against_rigid<double>(x, shape_, numbers_);
+      seen = {at.normal, at.gap};
+    }
+    seen->is_inside = seen->gap < -8 * unit_roundoff * (x.norm() + std::abs(seen->gap));
+    return seen;
+  }
+
+ private:
+  const Numbers<double>& numbers_;
+  const RigidSurface& shape_;
+  SideCurve polyline_;
+  std::optional<SurfaceSearch<2>> search_;
+};
+
+/// How the nodes of a side stand to an obstacle: the side's outward normal to the obstacle's.
+struct Stance {
+  int alike = 0, opposed = 0, inside = 0, all = 0;
+  double gap = std::numeric_limits<double>::infinity();  ///< least of the nodes that look at the obstacle
+};
+
+Stance stance_of(const Problem& problem, const StartingObstacle& obstacle, const SideSet& side) {
+  constexpr double against = 1e-9;  // cosine: less is a side along the obstacle's normal, to rounding
+  Stance stance;
+  for (const auto& [node, outward] : outward_normals(problem.slots.points, side)) {
+    const auto seen = obstacle.from(problem.slots.points.col(node));
+    if (!seen) continue;
+    const double cosine = seen->normal.dot(outward.normalized());
+    ++stance.all;
+    stance.alike += cosine > alike_from;
+    stance.opposed += cosine < -against;
+    stance.inside += seen->is_inside;
+    if (cosine < -alike_from) stance.gap = std::min(stance.gap, seen->gap);
+  }
+  return stance;
+}
+
+/// The side of a body that looks at an obstacle and is nearest to it: "body.side"; empty: none does.
+std::string nearest_side(const Problem& problem, const StartingObstacle& obstacle, int body) {
+  const Model& model = problem.model;
+  std::string name;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& candidate : names_of_sides(model, body)) {
+    const Stance stance = stance_of(problem, obstacle, surface_of(model, problem.slots.points, model.side(candidate)));
+    if (stance.alike > 0 || !(stance.gap < least)) continue;
+    least = stance.gap;
+    name = candidate;
+  }
+  return name;
 }
 
 /// The slave is on the far side of its body, which is as a whole where it may be: the obstacle is right.
-Warning far_side_warning(const Problem& problem, int c, int nodes) {
+Warning far_side_warning(const Problem& problem, const StartingObstacle& obstacle, int c, int nodes) {
   const auto& contact = problem.model.scene.contacts[c];
+  const std::string side = nearest_side(problem, obstacle, problem.model.contact_sides[c].slave.body);
   return {WarningCode::turned_surface, contact.name, static_cast<double>(nodes),
-          fmt::format("take the side of this body that faces {} as the slave", contact.master),
+          side.empty() ? fmt::format("take the side of this body that faces {} as the slave", contact.master)
+                       : fmt::format("take {} as the slave, which faces {}", side, contact.master),
           fmt::format("{0}: {1} faces away from {2}, and its body is outside of {2}: it is the far side of the body",
                       contact.name, contact.slave, contact.master)};
-}
-
-Warning turned_warning(const Problem& problem, int c, const std::string& words, int faulty) {
-  const auto& contact = problem.model.scene.contacts[c];
-  const Obstacle& obstacle = *obstacle_of(problem.model, c);
-  return {WarningCode::turned_surface, contact.name, static_cast<double>(faulty), if_turned(obstacle.shape),
-          contact.name + ": " + words};
 }
 }  // namespace
 
 std::optional<Warning> turned_surface(const Problem& problem, int c) {
-  // Cosine of the two normals: a side that is steeper may come to touch with its end.
-  constexpr double alike_from = 0.5;
-  constexpr double against = 1e-9;  // cosine: less is a side along the obstacle's normal, to rounding
   const Model& model = problem.model;
-  const auto& slots = problem.slots;
+  const auto& points = problem.slots.points;
   const auto& contact = model.scene.contacts[c];
-  const Obstacle* const obstacle = obstacle_of(model, c);
-  if (!obstacle || model.dimension != 2) return std::nullopt;
-  const SideSet side = surface_of(model, slots.points, model.contact_sides[c].slave);
-  if (!is_continuum(model.bodies[side.body].mesh.shape)) return std::nullopt;  // points and bars have no inside
-  std::map<int, PlanePlace> outward;
-  for (const auto& facet : side.facets) {
-    const PlanePlace along = slots.points.col(facet[1]).head<2>() - slots.points.col(facet[0]).head<2>();
-    for (int node : facet)
-      outward.try_emplace(node, PlanePlace::Zero()).first->second += PlanePlace(along[1], -along[0]);
-  }
-  if (outward.empty()) return std::nullopt;
-  const bool is_polyline = std::holds_alternative<Polyline>(obstacle->shape);
-  const SideCurve polyline = is_polyline ? curve_of_polyline(problem, *obstacle, contact, 0) : SideCurve{};
-  std::optional<SurfaceSearch<2>> search;
-  if (is_polyline) search.emplace(polyline.patches, polyline.places);
-  int alike = 0, opposed = 0, inside = 0, all = 0;
-  for (int node : side.nodes) {
-    const PlanePlace x = slots.points.col(node).head<2>();
-    const auto found = outward.find(node);
-    const auto at = start_against(problem, *obstacle, polyline, search ? &*search : nullptr, x);
-    if (!at || found == outward.end()) continue;
-    const double cosine = at->first.dot(found->second.normalized());
-    const double rounding = 8 * unit_roundoff * (x.norm() + std::abs(at->second));
-    ++all;
-    alike += cosine > alike_from;
-    opposed += cosine < -against;
-    inside += at->second < -rounding;
-  }
+  const Obstacle* const shape = obstacle_of(model, c);
+  if (!shape) return std::nullopt;
+  const SideSet side = surface_of(model, points, model.contact_sides[c].slave);
   const auto& body = model.bodies[side.body];
-  const auto is_inside = [&](int node) {
-    const PlanePlace x = slots.points.col(node).head<2>();
-    const auto at = start_against(problem, *obstacle, polyline, search ? &*search : nullptr, x);
-    return at && at->second < -8 * unit_roundoff * (x.norm() + std::abs(at->second));
+  if (!is_continuum(body.mesh.shape)) return std::nullopt;  // points and bars have no inside
+  const StartingObstacle obstacle(problem, contact, *shape);
+  const auto warning = [&](const std::string& words, int faulty) {
+    return Warning{WarningCode::turned_surface, contact.name, static_cast<double>(faulty), if_turned(shape->shape),
+                   contact.name + ": " + words};
   };
-  if (alike > 0 && opposed == 0) {
+  const Stance stance = stance_of(problem, obstacle, side);
+  if (stance.alike > 0 && stance.opposed == 0) {
     int within = 0;
-    for (int node = 0; node < body.mesh.node_count; ++node) within += is_inside(body.first_node + node);
-    if (within == 0) return far_side_warning(problem, c, alike);
-    const auto words =
-        fmt::format("the solid of {} is on the side of {}, whose outward normals point the same way as its own",
-                    contact.master, contact.slave);
-    return turned_warning(problem, c, words, alike);
+    for (int node = 0; node < body.mesh.node_count; ++node) {
+      const auto seen = obstacle.from(points.col(body.first_node + node));
+      within += seen && seen->is_inside;
+    }
+    if (within == 0) return far_side_warning(problem, obstacle, c, stance.alike);
+    return warning(fmt::format("the solid of {} is on the side of {}, whose outward normals point the same way as its "
+                               "own",
+                               contact.master, contact.slave),
+                   stance.alike);
   }
-  if (alike > 0 && opposed > 0 && 2 * inside > all && inside + 1 >= all) {  // a closed side: one node may be on it
-    return turned_warning(problem, c, fmt::format("{} starts inside of the solid of {}", contact.slave, contact.master),
-                          inside);
-  }
+  if (stance.alike > 0 && 2 * stance.inside > stance.all && stance.inside + 1 >= stance.all)
+    return warning(fmt::format("{} starts inside of the solid of {}", contact.slave, contact.master),
+                   stance.inside);  // a closed side: one node may be on it
   return std::nullopt;
 }
 

@@ -229,6 +229,14 @@ TEST(NeverCloses, NamesTheLeastDistanceOfTheRun) {
   }
 }
 
+TEST(NeverCloses, AsksForOneUnitWhereABodyIsTiny) {
+  const auto far = contacts_never_closed(run(held_block(150, -0.05), "monolithic_al"));
+  ASSERT_EQ(far.size(), 1u);
+  EXPECT_THAT(far[0].remedy, HasSubstr("times the size of the slave's body: give all lengths in one unit"));
+  const auto near = contacts_never_closed(run(held_block(0.125, -0.05), "monolithic_al"));
+  EXPECT_THAT(near[0].remedy, testing::StartsWith("look at the gap at the start"));
+}
+
 TEST(NeverCloses, IsNotSaidOfPointsThatTouchWithoutForce) {
   for (const auto& method : methods)
     EXPECT_TRUE(contacts_never_closed(run(held_block(0.125, -0.125), method)).empty()) << method;

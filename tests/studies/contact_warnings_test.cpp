@@ -185,7 +185,46 @@ TEST(ContactWarnings, TellOfASlaveOnTheFarSideOfItsBody) {
   const auto found = of_code(run(scene), WarningCode::turned_surface);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_THAT(found[0].text, HasSubstr("it is the far side of the body"));
-  EXPECT_THAT(found[0].remedy, testing::StartsWith("take the side of this body that faces "));
+  EXPECT_EQ(found[0].remedy, "take b.bottom as the slave, which faces ground");
+}
+
+TEST(ContactWarnings, NameTheSideToTakeInSpaceToo) {
+  const json above = {{"plane", {{"point", {0, 0, 0}}, {"normal", {0, 0, 1}}}}},
+             turned = {{"plane", {{"point", {0, 0, 0}}, {"normal", {0, 0, -1}}}}};
+  const json held = {{"on", "b.left"}, {"move", {{"x", 0}, {"y", 0}, {"z", 0}}}};
+  json scene = block_on_ground(above, held);
+  scene["bodies"]["b"]["mesh"] = {{"box", {{"min", {0, 0, 0}}, {"max", {1, 1, 1}}, {"cells", {2, 2, 2}}}}};
+  scene["contacts"]["s"]["slave"] = "b.top";
+  const auto far_side = of_code(run(scene), WarningCode::turned_surface);
+  ASSERT_EQ(far_side.size(), 1u);
+  EXPECT_EQ(far_side[0].remedy, "take b.bottom as the slave, which faces ground");
+  scene["contacts"]["s"]["slave"] = "b.bottom";
+  EXPECT_TRUE(of_code(run(scene), WarningCode::turned_surface).empty());
+  scene["obstacles"]["ground"] = turned;
+  const auto inside_out = of_code(run(scene), WarningCode::turned_surface);
+  ASSERT_EQ(inside_out.size(), 1u);
+  EXPECT_THAT(inside_out[0].remedy, HasSubstr("turn the normal of the plane round"));
+  json cup = {{"sphere", {{"center", {0.5, 0.5, -5}}, {"radius", 5}}}};
+  scene["obstacles"]["ground"] = cup;
+  EXPECT_TRUE(of_code(run(scene), WarningCode::turned_surface).empty());
+  cup["sphere"]["inside"] = true;
+  scene["obstacles"]["ground"] = cup;
+  const auto turned_ball = of_code(run(scene), WarningCode::turned_surface);
+  ASSERT_EQ(turned_ball.size(), 1u);
+  EXPECT_THAT(turned_ball[0].remedy, HasSubstr("look at \"inside\" of the sphere"));
+}
+
+/// Two blocks, one above the other, whose contact names sides that face away, or across.
+TEST(ContactWarnings, NameTheSidesOfTwoBodiesThatFaceEachOther) {
+  json scene = {
+      {"bodies", {{"low", box({0, 0}, {2, 1}, {3, 2})}, {"up", box({0.5, 1}, {1.5, 2}, {2, 2})}}},
+      {"contacts", {{"s", {{"slave", "up.top"}, {"master", "low.top"}}}}},
+      {"supports",
+       {{{"on", "low.bottom"}, {"move", {{"x", 0}, {"y", 0}}}}, {{"on", "up.left"}, {"move", {{"x", 0}, {"y", 0}}}}}},
+      {"time", {{"end", 1}, {"steps", 1}}}};
+  const auto found = of_code(run(scene), WarningCode::never_closes);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].remedy, "take up.bottom as the slave and low.top as the master, which face each other");
 }
 
 TEST(ContactWarnings, TellOfATurnedPolylineWhereARunFails) {
