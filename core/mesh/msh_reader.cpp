@@ -183,8 +183,18 @@ class Import {
     const std::string mixed = dimension_ == 2 ? "clockwise and counter-clockwise" : "left-handed and right-handed";
     fault(elements[*bad], "element " + std::to_string(elements[*bad]->tag) + " of body \"" + body.body + "\" " +
                               (is_against ? "is turned against the others (" + mixed + " are mixed)"
-                                          : "is degenerate: a corner is flat or turns inwards"));
+                                          : "is degenerate: " + reason_of_bad_element(body, *bad)));
     return false;
+  }
+
+  static std::string reason_of_bad_element(const ImportedMesh& body, int element) {
+    const auto stray = stray_middle(body.mesh, body.points, element);
+    if (!stray) return "a corner is flat or turns inwards";
+    std::string place;
+    for (const double x : body.points.col(stray->node)) place += (place.empty() ? "(" : ", ") + in_digits(x);
+    return "its corners are sound, but the node at " + place + ") is " + in_digits(100 * stray->share) +
+           " % of its edge's length away from the middle of that edge; Gmsh lists the corners of an element first, " +
+           "then the middles of its edges";
   }
 
   bool is_thick_enough(const Elements& elements, const ImportedMesh& body) {

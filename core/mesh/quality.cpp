@@ -154,6 +154,22 @@ std::optional<int> first_inverted_element(const Mesh& mesh, const Points<double>
   return std::nullopt;
 }
 
+std::optional<StrayMiddle> stray_middle(const Mesh& mesh, const Points<double>& points, int element) {
+  const int* nodes = mesh.connectivity.data() + element * nodes_of(mesh.shape);
+  if (!is_quadratic(mesh.shape) || !is_convex(nodes, linear_shape(mesh.shape), points)) return std::nullopt;
+  StrayMiddle worst;
+  for (const auto& side : sides_of(mesh.shape)) {
+    const int corners = is_solid(mesh.shape) ? corners_of_face(side.size()) : 2, edges = corners == 2 ? 1 : corners;
+    for (int k = 0; k < edges; ++k) {
+      const auto from = points.col(nodes[side[k]]), to = points.col(nodes[side[(k + 1) % corners]]);
+      const int middle = nodes[side[corners + k]];
+      const double share = (points.col(middle) - (from + to) / 2).norm() / (to - from).norm();
+      if (share > worst.share) worst = {middle, share};
+    }
+  }
+  return worst;
+}
+
 std::optional<std::pair<int, int>> nodes_at_one_place(const Mesh& mesh, const Points<double>& points) {
   constexpr double near = 1e-6, cell = 1e-3;  // of the shortest edge; a cell holds nodes that are near one another
   const int count = nodes_of(mesh.shape), corners = corners_of(mesh.shape);

@@ -13,6 +13,16 @@ namespace stickslip {
 /// all are usable. A corner counts as flat when its sine is within rounding of zero. A point is always usable.
 std::optional<int> first_inverted_element(const Mesh&, const Points<double>&);
 
+/// A node in the middle of an edge that folds its element, whose corners alone are sound.
+struct StrayMiddle {
+  int node = 0;      ///< of the mesh
+  double share = 0;  ///< of the edge's length: how far the node is from the middle of its ends
+};
+
+/// Of an element that is not usable the node in the middle of an edge that lies furthest from where it should, if the
+/// element with its corners alone would be usable.
+std::optional<StrayMiddle> stray_middle(const Mesh&, const Points<double>&, int element);
+
 /// Largest relative rounding of a strain: four digits, as many as a run that passes as solved has at least
 /// (most_rounding of studies/run/accuracy.hpp).
 inline constexpr double most_strain_rounding = 1e-4;

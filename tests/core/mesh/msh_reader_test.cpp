@@ -1,5 +1,6 @@
 #include "core/mesh/msh_reader.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -158,6 +159,15 @@ $EndElements
     EXPECT_TRUE(wrong.bodies.empty() || wrong.bodies[0].mesh.sides.empty());
     EXPECT_FALSE(wrong.errors.empty() && wrong.notes.empty());
   }
+  // middles in another order, and one that is moved along its edge: corners are sound
+  const ImportResult shuffled = read(replaced(six, "NODES", "1 2 3 5 6 4")),
+                     moved = read(replaced(replaced(six, "NODES", "1 2 3 4 5 6"), "4 1 0 0", "4 1.8 0 0"));
+  ASSERT_EQ(shuffled.errors.size(), 1u);
+  EXPECT_THAT(
+      shuffled.errors[0],
+      testing::HasSubstr("its corners are sound, but the node at (1, 0) is 70.7107 % of its edge's length away"));
+  ASSERT_EQ(moved.errors.size(), 1u);
+  EXPECT_THAT(moved.errors[0], testing::HasSubstr("the node at (1.8, 0) is 40 % of its edge's length away"));
 }
 
 TEST(MshReader, GivesTheSameFromBothVersions) {
