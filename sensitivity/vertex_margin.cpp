@@ -16,24 +16,28 @@ namespace {
 
 using Place = Vec<double, 2>;
 
-/// Least distance of a point from an end of the patch that it faces, over the length of the patch, of ends at which the
-/// sine of the angle between the patches is at least `turn`. `place(vertex)`: from the point.
-template <class Places>
-double least_way(const Surface<2>& patches, int faced, double turn, Places&& place) {
+/// How a point that faces a facet stands to the vertices at its ends.
+struct WayToVertex {
+  double share = 0;   ///< distance from a vertex, over the length of the facet
+  double length = 0;  ///< of the facet
+  double turn = 0;    ///< sine of the angle between the facets there; positive: the vertex stands out of the solid
+};
+
+/// Calls f for each end of the facet `faced` behind which another one is. `place(vertex)`: from the point.
+template <class Places, class F>
+void for_each_vertex(const Surface<2>& patches, int faced, Places&& place, F&& f) {
   const auto along = [&](int patch) -> Place {
     return place(patches[patch].corner(1)) - place(patches[patch].corner(0));
   };
-  double least = std::numeric_limits<double>::infinity();
   const double length = along(faced).norm();
   for (const int side : {0, 1}) {
     const int other = patches[faced].across[side];
     if (other == no_patch) continue;
     const Place vertex = place(patches[faced].corner(side));
     const Place a = along(faced).normalized(), b = along(other).normalized(), half = (a + b).normalized();
-    if (std::abs(a[0] * b[1] - a[1] * b[0]) < turn) continue;
-    least = std::min(least, std::abs(vertex.dot(half)) / length);
+    const double turn = a[0] * b[1] - a[1] * b[0];
+    f(WayToVertex{std::abs(vertex.dot(half)) / length, length, side == 1 ? turn : -turn});
   }
-  return least;
 }
 
 /// Nodes at which the slave side of an integrated curve ends.
@@ -70,11 +74,11 @@ bool has_kink_at(const MasterSurface& curve, int node, At&& present, OfStart&& o
   return false;
 }
 
-/// Calls f(point, way) for each point that is closed in `reached` and faces a facet there; `way`: its least_way() at
+/// Calls f(point, way) for each point that is closed in `reached` and faces a facet there, and each vertex of that; at
 /// the places of `at`, whose time is `time`.
 template <class F>
 void for_each_way(const Model& model, const Slots<double>& slots, const State<double>& at, const State<double>& reached,
-                  double time, double turn, F&& f) {
+                  double time, F&& f) {
   if (model.dimension == 3 || !slides_along_facets(model)) return;
   const Vector<double> compact = to_compact(model, at.displacement);
   const auto positions = detail::positions_at(model, slots, compact, time);
@@ -86,8 +90,9 @@ void for_each_way(const Model& model, const Slots<double>& slots, const State<do
     const int faced = reached.contact.facing[p].patch;
     if (faced == no_patch || curve.patches<2>()[faced].is_smooth()) continue;
     const Placed<double> x = positions.slave(point);
-    f(static_cast<int>(p), least_way(curve.patches<2>(), faced, turn,
-                                     [&](int vertex) -> Place { return positions.vertex(curve, vertex) - x; }));
+    for_each_vertex(
+        curve.patches<2>(), faced, [&](int vertex) -> Place { return positions.vertex(curve, vertex) - x; },
+        [&](const WayToVertex& way) { f(static_cast<int>(p), way); });
   }
 }
 
@@ -133,7 +138,8 @@ bool slides_along_facets(const Model& model) {
 
 double vertex_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time) {
   double least = std::min(integration_margin(model, slots, state, time), edge_margin(model, state));
-  for_each_way(model, slots, state, state, time, 0, [&](int, double way) { least = std::min(least, way); });
+  for_each_way(model, slots, state, state, time,
+               [&](int, const WayToVertex& way) { least = std::min(least, way.share); });
   return least;
 }
 
@@ -141,20 +147,24 @@ std::vector<char> contacts_at_vertices(const Model& model, const Slots<double>& 
                                        double start, const State<double>& reached, double end,
                                        const std::vector<double>& compliance) {
   constexpr double rounding = 1e-9;  // of a facet: coordinates of places that meet differ by less
-  constexpr double turn = 1e-5;      // forces along normals that are nearer to one another are alike
+  constexpr double turned = 1e-5;    // forces along normals that are nearer to one another are alike
   std::vector<char> contacts;
-  const auto mark = [&](int p, double way) {
+  const auto mark = [&](int p, const WayToVertex& way) {
+    if (std::abs(way.turn) < turned) return;
     const auto& point = model.points[p];
-    double elastic = 0;
-    if (!compliance.empty() && point.mesh_size > 0)
-      elastic = compliance[p] * reached.contact.traction.segment(point.multiplier + 1, point.tangents).norm() /
-                point.mesh_size;
-    if (way > std::max(rounding, elastic)) return;
+    const auto& traction = reached.contact.traction;
+    double reach = 0;
+    if (!compliance.empty()) reach = compliance[p] * traction.segment(point.multiplier + 1, point.tangents).norm();
+    if (way.turn > 0) {
+      const double force = std::abs(traction[point.multiplier]) * slots.geometry[p].area;
+      reach = std::max(reach, force * way.turn / slots.stiffness[p]);
+    }
+    if (way.share > std::max(rounding, reach / way.length)) return;
     contacts.resize(model.scene.contacts.size());
     contacts[point.contact] = 1;
   };
-  for_each_way(model, slots, left, reached, start, turn, mark);
-  for_each_way(model, slots, reached, reached, end, turn, mark);
+  for_each_way(model, slots, left, reached, start, mark);
+  for_each_way(model, slots, reached, reached, end, mark);
   return contacts;
 }
 

@@ -23,11 +23,13 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
 /// integration_margin(), if that is less. Infinity if no closed point slides along facets.
 double vertex_margin(const Model& model, const Slots<double>& slots, const State<double>& state, double time);
 
-/// Per contact: whether a point that is closed in `reached` is on a vertex of facets there, or was in `left`. Each of
-/// the two facets leads to a solution of its own then, and rounding decides between them. Free ends and facets in line
-/// are left out. Empty if there is no such point. `start`, `end`: times of `left` and `reached`; `compliance`: per
-/// point, length^3 / force, of the tangential springs of a penalty, which take points off a vertex; empty if there are
-/// none.
+/// Per contact: whether a point that is closed in `reached` is at a vertex of facets there, or was in `left`. Each of
+/// the two facets leads to a solution of its own then, and rounding decides between them. At a vertex that stands out
+/// of the solid this holds of a whole strip: the force N turns by the angle alpha between the facets, which takes the
+/// node N alpha / k further, k its stiffness; on either facet it stays within so much of the vertex. Free ends and
+/// facets in line are left out. Empty if there is no such point. `start`, `end`: times of `left` and `reached`;
+/// `compliance`: per point, length^3 / force, of the tangential springs of a penalty, which take points off a vertex;
+/// empty if there are none.
 std::vector<char> contacts_at_vertices(const Model& model, const Slots<double>& slots, const State<double>& left,
                                        double start, const State<double>& reached, double end,
                                        const std::vector<double>& compliance);

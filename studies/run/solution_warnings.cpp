@@ -91,10 +91,11 @@ void add_undetermined_contacts(const CaseResult& result, std::vector<Warning>& w
          "take friction off one of the contacts of a node, or use fewer slave nodes on a facet of the master",
          "the forces of its points are not determined: their constraints repeat one another, so that other forces "
          "balance the same loads; methods, scales and steps may settle on different ones");
-    warn(&StepResult::at_vertex, 1,
-         R"(smooth the master, integrate over segments ("discretization": "segment"), or shift a mesh a little)",
-         "a point begins or ends on a vertex of the master's facets: each of the two facets may lead to a solution of "
-         "its own, and rounding decides between them");
+    warn(
+        &StepResult::at_vertex, 1,
+        R"(smooth the master, integrate over segments ("discretization": "segment"), or shift a mesh a little)",
+        "a point that presses begins or ends at a vertex of the master's facets, or next to it: each of the two facets "
+        "may lead to a solution of its own, and methods, steps and rounding may settle on different ones");
     warn(&StepResult::at_end, 1,
          R"(integrate over segments ("discretization": "segment"), take the other side as the slave, or smaller steps)",
          "a node that presses comes to an end of its master: friction may hold it there, or let it go, and methods may "

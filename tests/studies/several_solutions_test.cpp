@@ -180,6 +180,33 @@ TEST(SeveralSolutions, AreToldOfAPointThatBeginsOnAVertex) {
   EXPECT_THAT(warnings(turned, monolithic), Not(Contains(leaves)));
 }
 
+/// A point on springs that a force N presses onto a roof of two facets, its anchor at d beside the ridge. On a facet of
+/// slope -+ m it is at d -+ N m / k, to first order in m. So both facets have a solution where |d| < N m / k.
+TEST(SeveralSolutions, AreToldOfAPointNextToAVertexThatStandsOut) {
+  constexpr double k = 100, N = 1, slope = 0.05;
+  const auto roof = [&](double d, double side) {
+    return json{
+        {"strain", "finite"},
+        {"bodies",
+         {{"b",
+           {{"mesh", {{"point", {{"at", {side, 1}}}}}},
+            {"material", {{"grounded_spring", {{"stiffness", {{k, 0}, {0, k}}}}}}}}}}},
+        {"obstacles", {{"roof", {{"polyline", {{"points", {{-2, -2 * slope}, {0, 0}, {2, -2 * slope}}}}}}}}},
+        {"contacts", {{"c", {{"slave", "b.node"}, {"master", "roof"}, {"surface", "faceted"}}}}},
+        {"supports", {{{"on", "b.anchor"}, {"move", {{"x", {{0, 0}, {1, d - side}}}, {"y", {{0, 0}, {1, -1}}}}}}}},
+        {"loads", {{{"on", "b.node"}, {"force", {0, -N}}}}},
+        {"time", {{"end", 1}, {"steps", 8}}}};
+  };
+  const auto near =
+      testing::AllOf(has_code(WarningCode::non_unique), testing::Field(&Warning::text, HasSubstr("vertex")));
+  const double reach = N * slope / k;
+  for (const json& method : {penalty, uzawa, monolithic})
+    for (const double side : {-1e-2, 1e-2}) {  // where it comes from
+      EXPECT_THAT(warnings(roof(0.9 * std::copysign(reach, side), side), method), Contains(near)) << method;
+      EXPECT_THAT(warnings(roof(1.1 * std::copysign(reach, side), side), method), Not(Contains(near))) << method;
+    }
+}
+
 /// Bars in a row that lie a little above a rough floor sag onto it: which of them slide, and how far, depends on the
 /// way.
 TEST(SeveralSolutions, AreToldOfBarsThatBeginAsAMechanism) {
