@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # check_package.sh BUILD SOURCE: makes the Debian package of a build, unpacks it into an empty folder, and follows the
-# tutorial with what is in there: the program, its scenes and its copy of the page.
+# tutorial with what is in there: the program, its scenes and its copy of the page. The links of all pages lead somewhere.
 set -euo pipefail
 build=$1 source=$2
 root=$(mktemp -d)
@@ -20,6 +20,8 @@ for file in "$share/man/man1/stickslip.1" "$doc/LICENSE" "$doc/copyright" "$doc/
   "$share/bash-completion/completions/stickslip"; do
   [ -s "$file" ] || { echo "the package lacks $file"; exit 1; }
 done
+
+python3 "$source/tests/docs/check_links.py" "$doc"
 
 # nothing of this shell but where the libraries are
 env -i PATH=/usr/bin:/bin LD_LIBRARY_PATH="${LD_LIBRARY_PATH:-}" SCENES="$root/system/usr/share/stickslip/scenes" \
