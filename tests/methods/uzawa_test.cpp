@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "methods/augmentation/augmentation_status.hpp"
+#include "methods/augmentation/projection.hpp"
 #include "methods/newton/regularisation.hpp"
 #include "tests/support/solved.hpp"
 
@@ -309,6 +310,20 @@ TEST(Adaption, BeginsAnIncrementWithNoLargerScaleThanTheAutomaticOne) {
     EXPECT_EQ(first[1], std::min(30.0, most)) << multiple;
     EXPECT_NEAR(first[2], std::min(1e5, most), 1e-12 * most) << "rounding of the products; " << multiple;
   }
+}
+
+/// Of a slider with mu = 0.3: tension goes, friction is cut to the bound, what is in the cone stays.
+TEST(Projection, IsOntoTheCone) {
+  const Model model = make_model(scenes::slider({{1, 0.1}}, 1));
+  const auto slots = make_slots<double>(model, model.scene.as<double>());
+  const auto projected = [&](double normal, double tangential) {
+    Vector<double> multiplier(2);
+    multiplier << normal, tangential;
+    return Vector<double>(detail::projected_multiplier(model, slots, multiplier));
+  };
+  EXPECT_EQ(projected(2, 1), Vector<double>(Eigen::Vector2d(0, 0)));
+  EXPECT_EQ(projected(-10, -2), Vector<double>(Eigen::Vector2d(-10, -2)));
+  EXPECT_LT((projected(-10, -4) - Eigen::Vector2d(-10, -3)).norm(), 1e-15 * 10);  // (a rounding of each)
 }
 
 }  // namespace

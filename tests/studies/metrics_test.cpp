@@ -49,6 +49,18 @@ TEST(Metrics, EquilibriumCountsNoForceThatASupportTakes) {
   EXPECT_NEAR(made.errors()[0].equilibrium, 1.0 / 10, rounding_of_metrics);
 }
 
+/// A stiff body that its support carries a thousand lengths away could make forces of 1e9. A load of 1e-3, more than
+/// their rounding, is what errors are measured by all the same.
+TEST(Metrics, EquilibriumIsMeasuredByALoadHoweverSmall) {
+  Scene scene = one_point();
+  scene.bodies.push_back({"b", PointMesh{{3.0, 0.0}}, GroundedSpring{{{1e6, 0.0}, {0.0, 1e6}}}, "", 1.0});
+  scene.loads[0].history = scenes::table({{0, 1e-4}, {4, 1e-4}});
+  Made made(scene);
+  auto& state = made.next();
+  state.displacement << 0, 0, 0, 0, 1e3, 0, 1e3, 0;
+  EXPECT_NEAR(made.errors()[0].equilibrium, 1, rounding_of_metrics);
+}
+
 TEST(Metrics, EquilibriumTakesTheWorstNodeAndTheLoadOfItsTime) {
   Scene scene = one_point();
   scene.bodies.push_back({"b", PointMesh{{3.0, 0.0}}, GroundedSpring{{{1.0, 0.0}, {0.0, 1.0}}}, "", 1.0});
