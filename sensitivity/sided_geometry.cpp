@@ -52,7 +52,8 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
   return beside.points;
 }
 
-/// Vertices of the polyline that a point faces; the first two are those of a facet.
+/// Vertices of the polyline that a point faces; the first two are those of a facet. (Those of facets in space are no
+/// parameters.)
 std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
   std::vector<int> vertices;
   const auto add = [&](int node) {
@@ -60,7 +61,7 @@ std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
   };
   std::for_each(point.corners.begin(), point.corners.end(), add);
   for (const auto& segment : point.segments) std::for_each(segment.master.begin(), segment.master.end(), add);
-  if (point.surface >= 0 && model.surfaces[point.surface].is_rigid())
+  if (point.surface >= 0 && model.surfaces[point.surface].is_rigid() && model.dimension == 2)
     for (int vertex : model.surfaces[point.surface].vertices(point.facing.patch))
       if (vertex != no_vertex) vertices.push_back(vertex);
   return vertices;

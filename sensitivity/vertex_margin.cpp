@@ -107,7 +107,7 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
     if (!model.slides_on_surfaces() || !curve.is_integrated()) continue;
     const auto of_start = [&](int node) -> Place { return detail::start_of(model, curve.obstacle, slots, node); };
     const auto present = [&](int node) -> Placed<double> {
-      if (node >= model.node_count) return positions.vertex_of_polyline(curve.obstacle, node - model.node_count);
+      if (node >= model.node_count) return positions.vertex_of_obstacle(curve.obstacle, node - model.node_count);
       return {of_start(node), state.displacement.segment<2>(2 * static_cast<Eigen::Index>(node))};
     };
     const auto ends = ends_of_slave(model, c);

@@ -11,9 +11,11 @@
 /// search (core/contact/facet_search.hpp, surface_search.hpp).
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "core/contact/circle.hpp"
 #include "core/contact/cylinder.hpp"
@@ -24,13 +26,30 @@ namespace stickslip {
 
 /// Rigid curve from point to point, the solid on its right. `closed`: the last point is the first again.
 struct Polyline {
-  static constexpr bool is_in_plane = true, is_in_space = false, is_flat = false;
+  static constexpr bool is_in_plane = true, is_in_space = false, is_flat = false, has_facets = true;
   static constexpr const char* if_turned = "turn the points of the polyline round: its solid is on their right";
   std::vector<std::array<Number, 2>> points;  ///< without the repeated one
   bool closed = false;
 };
 
-using RigidSurface = std::variant<Plane, Circle, Sphere, Cylinder, Polyline>;
+/// Rigid surface of triangles and quadrilaterals, the solid behind them.
+struct RigidFacets {
+  static constexpr bool is_in_plane = false, is_in_space = true, is_flat = false, has_facets = true;
+  static constexpr const char* if_turned = "turn the facets of its file round: its solid is behind them";
+  Eigen::Matrix3Xd vertices;             ///< length
+  std::vector<std::vector<int>> facets;  ///< three or four vertices each, counter-clockwise seen from outside
+};
+
+using RigidSurface = std::variant<Plane, Circle, Sphere, Cylinder, Polyline, RigidFacets>;
+
+/// Whether a surface is made of facets that lie beside one another: points slide along it as along a side of a body.
+inline bool has_facets(const RigidSurface& surface) {
+  return std::visit(
+      []<class S>(const S&) {
+        return requires { S::has_facets; };
+      },
+      surface);
+}
 
 template <class S>
 concept WholeSurface = requires(const S& surface, const Vec<double, 2>& x, const Numbers<double>& numbers) {
@@ -44,7 +63,7 @@ namespace detail {
 
 template <class S>
 constexpr bool is_whole_surface() {
-  if constexpr (!std::is_same_v<S, Polyline>) static_assert(WholeSurface<S>, "a rigid surface lacks something");
+  if constexpr (!requires { S::has_facets; }) static_assert(WholeSurface<S>, "a rigid surface lacks something");
   return true;
 }
 template <class... S>
@@ -67,7 +86,7 @@ inline std::string if_turned(const RigidSurface& surface) {
   return std::visit([](const auto& shape) -> std::string { return shape.if_turned; }, surface);
 }
 
-/// Geometry of the place X + w against a surface. pre: it is no polyline.
+/// Geometry of the place X + w against a surface. pre: it has no facets.
 template <class T, class Start, class Motion, class Read>
 PointGeometry<T> against_rigid(const Start& X, const Motion& w, const RigidSurface& surface, const Read& numbers) {
   return std::visit(

@@ -61,7 +61,16 @@ struct MovedSurface {
   Place place(const Placed<T, T, D>& at) const { return values(at.start) - origin + values(at.moved); }
   Places<D> places_of(const MasterSurface& surface) const {
     Places<D> at(D, surface.vertex_count);
-    for (int v = 0; v < surface.vertex_count; ++v) at.col(v) = place(positions().template vertex<D>(surface, v));
+    if (!surface.is_rigid()) {
+      for (int v = 0; v < surface.vertex_count; ++v) at.col(v) = place(positions().template vertex<D>(surface, v));
+      return at;
+    }
+    const Obstacle& obstacle = input.model.scene.obstacles[surface.obstacle];
+    const auto frame = positions().template frame<D>(surface.obstacle);
+    for (int v = 0; v < surface.vertex_count; ++v) {
+      const Vec<T, D> X = start_of_vertex<D>(obstacle, input.slots.numbers, v);
+      at.col(v) = place({X, frame.displacement(X)});
+    }
     return at;
   }
 };

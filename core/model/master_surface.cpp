@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "core/model/positions.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -104,14 +106,25 @@ std::array<int, 3> QuadraticEdges::of_facet(int a, int b) const {
   return Segment{}.slave_edge;
 }
 
-Eigen::Matrix2Xd vertices_of(const Polyline& polyline, const Numbers<double>& numbers) {
-  Eigen::Matrix2Xd vertices(2, static_cast<Eigen::Index>(polyline.points.size()));
+template <int D>
+Places<D> vertices_of(const Obstacle& obstacle, const Numbers<double>& numbers) {
+  Eigen::Index count = 0;
+  if constexpr (D == 2)
+    count = std::ssize(std::get<Polyline>(obstacle.shape).points);
+  else
+    count = std::get<RigidFacets>(obstacle.shape).vertices.cols();
+  Places<D> vertices(D, count);
   for (Eigen::Index v = 0; v < vertices.cols(); ++v)
-    for (int i = 0; i < 2; ++i) vertices(i, v) = numbers(polyline.points[v][i]);
+    vertices.col(v) = detail::start_of_vertex<D>(obstacle, numbers, static_cast<int>(v));
   return vertices;
 }
 
-std::vector<std::vector<int>> facets_of(const Polyline& polyline) {
+template Places<2> vertices_of<2>(const Obstacle&, const Numbers<double>&);
+template Places<3> vertices_of<3>(const Obstacle&, const Numbers<double>&);
+
+std::vector<std::vector<int>> facets_of(const Obstacle& obstacle) {
+  if (const auto* surface = std::get_if<RigidFacets>(&obstacle.shape)) return surface->facets;
+  const auto& polyline = std::get<Polyline>(obstacle.shape);
   const int count = static_cast<int>(polyline.points.size());
   std::vector<std::vector<int>> facets;
   for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
@@ -126,17 +139,13 @@ std::pair<MasterSurface, Places<D>> make_master(const Model& model, const Points
   master.contact = contact_index;
   master.obstacle = obstacle;
   Places<D> places;
-  if constexpr (D == 2) {
-    if (obstacle >= 0) {
-      const auto& polyline = std::get<Polyline>(model.scene.obstacles[obstacle].shape);
-      places = vertices_of(polyline, model.scene.as<double>());
-      facets = facets_of(polyline);
-      if (contact.segment) std::reverse(facets.begin(), facets.end());  // each begins where the one before ends
-    } else if (contact.is_of_itself() || contact.segment) {
-      facets = ordered_facets(facets, points);
-    }
-  }
-  if (obstacle < 0) {
+  if (obstacle >= 0) {
+    places = vertices_of<D>(model.scene.obstacles[obstacle], model.scene.as<double>());
+    facets = facets_of(model.scene.obstacles[obstacle]);
+    if (contact.segment) std::reverse(facets.begin(), facets.end());  // each begins where the one before ends
+  } else {
+    if constexpr (D == 2)
+      if (contact.is_of_itself() || contact.segment) facets = ordered_facets(facets, points);
     number_vertices(facets, master);
     places.resize(D, static_cast<Eigen::Index>(master.nodes.size()));
     for (std::size_t v = 0; v < master.nodes.size(); ++v)

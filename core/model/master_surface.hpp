@@ -1,4 +1,4 @@
-/// Master surfaces of contacts: the facets of a side or of a polyline, in order, as patches.
+/// Master surfaces of contacts: the facets of a side or of an obstacle, in order, as patches.
 #pragma once
 
 #include <array>
@@ -10,18 +10,20 @@
 
 namespace stickslip {
 
-/// Vertices of a polyline, 2 x vertices, length.
-Eigen::Matrix2Xd vertices_of(const Polyline& polyline, const Numbers<double>& numbers);
+/// Vertices of an obstacle that has facets, D x vertices, length.
+template <int D>
+Places<D> vertices_of(const Obstacle& obstacle, const Numbers<double>& numbers);
 
-/// Facets of a polyline as vertex pairs, the solid on their left. A polyline has it on its right, so they are reversed.
-std::vector<std::vector<int>> facets_of(const Polyline& polyline);
+/// Facets of an obstacle that has them, by its vertices, as make_surface() takes them. A polyline has its solid on the
+/// right, so in the plane they are reversed.
+std::vector<std::vector<int>> facets_of(const Obstacle& obstacle);
 
 /// Master surface of the contact Scene::contacts[contact], and the initial positions of its vertices. Throws ModelError
 /// if the facets are no surface.
 ///
 ///   points    initial positions of the nodes, D x nodes, length
-///   obstacle  the polyline in Scene::obstacles that is the master; -1: a side of a body is
-///   facets    of this side, as make_surface() takes them; not read of a polyline
+///   obstacle  the master in Scene::obstacles, which has facets; -1: a side of a body is
+///   facets    of this side, as make_surface() takes them; not read of an obstacle
 template <int D>
 std::pair<MasterSurface, Places<D>> make_master(const Model& model, const Points<double>& points, int contact,
                                                 int obstacle, std::vector<std::vector<int>> facets);
@@ -38,7 +40,7 @@ class QuadraticEdges {
 };
 
 /// The master curve of segment-integrated contact at finite strain: with the nodes of the patches, and with what the
-/// nodes of a side in contact with itself may face. `master`: the side; not read of a polyline.
+/// nodes of a side in contact with itself may face. `master`: the side; not read of an obstacle.
 MasterSurface integrated_curve(const Model& model, const Points<double>& points, int contact, int obstacle,
                                const SideSet& master);
 

@@ -173,8 +173,8 @@ void place_feet(Model& model) {
   for (auto& point : model.points) {
     if (point.tangents == 0) continue;
     point.foot = model.foot_count;
-    point.turns_frame =
-        model.dimension == 3 && point.obstacle >= 0 && !is_flat(model.scene.obstacles[point.obstacle].shape);
+    point.turns_frame = model.dimension == 3 && point.obstacle >= 0 && point.surface < 0 &&
+                        !is_flat(model.scene.obstacles[point.obstacle].shape);
     model.foot_count += point.feet(model.dimension);
   }
 }

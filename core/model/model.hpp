@@ -40,11 +40,11 @@ struct BodyMesh {
   int first_memory = 0;  ///< first entry of the body in History::bodies
 };
 
-/// A side of a body, or a rigid polyline, as a surface along which points slide.
+/// A side of a body, or an obstacle that has facets, as a surface along which points slide.
 struct MasterSurface {
   int contact = 0;
-  int obstacle = -1;        ///< index of the polyline in Scene::obstacles; -1: a side of a body
-  std::vector<int> nodes;   ///< per vertex: node; empty for a polyline
+  int obstacle = -1;        ///< index in Scene::obstacles; -1: a side of a body
+  std::vector<int> nodes;   ///< per vertex: node; empty for an obstacle
   std::vector<int> places;  ///< index of these nodes in Model::contact_nodes
   int vertex_count = 0;
   std::variant<Surface<2>, Surface<3>> surface;

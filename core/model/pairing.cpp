@@ -106,7 +106,7 @@ bool find_faces(const Points<double>& points, const FaceSearch& master, ContactP
 bool find_master(const Points<double>& points, const Model& model, const Facets& facets, ContactPoint& point) {
   if (point.obstacle < 0) return find_corners(points, facets, point);
   const Obstacle& obstacle = model.scene.obstacles[point.obstacle];
-  if (std::holds_alternative<Polyline>(obstacle.shape)) return find_corners(points, facets, point);
+  if (has_facets(obstacle.shape)) return find_corners(points, facets, point);
   if (const char* key = ambiguity(points.col(point.nodes[0]), obstacle.shape, model.scene.as<double>()))
     throw ModelError("is where a slave node is, from which no place of the surface is nearer than another",
                      "/obstacles/" + obstacle.name + "/" + key);
@@ -116,12 +116,12 @@ bool find_master(const Points<double>& points, const Model& model, const Facets&
 Facets facets_of_master(const Model& model, const Points<double>& points, const Pairing& pairing) {
   if (pairing.obstacle < 0 && model.dimension == 3) return {points, {}};
   if (pairing.obstacle < 0) return {points, pairing.master.facets};
-  const auto* polyline = std::get_if<Polyline>(&model.scene.obstacles[pairing.obstacle].shape);
-  if (!polyline) return {points, {}};
-  const Eigen::Matrix2Xd vertices = vertices_of(*polyline, model.scene.as<double>());
+  const Obstacle& obstacle = model.scene.obstacles[pairing.obstacle];
+  if (!has_facets(obstacle.shape)) return {points, {}};
+  const auto vertices = vertices_of<2>(obstacle, model.scene.as<double>());
   Points<double> all(2, points.cols() + vertices.cols());
   all << points, vertices;
-  auto facets = facets_of(*polyline);
+  auto facets = facets_of(obstacle);
   for (auto& facet : facets)
     for (int& vertex : facet) vertex += model.node_count;
   return {std::move(all), std::move(facets)};
@@ -313,10 +313,11 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   } else if (model.dimension == 3 && !is_in_space(model.scene.obstacles[pairing.obstacle].shape)) {
     throw ModelError("this surface is not made for space", "/obstacles/" + contact.master);
   }
-  const bool has_facets =
-      pairing.obstacle < 0 || std::holds_alternative<Polyline>(model.scene.obstacles[pairing.obstacle].shape);
-  const bool slides = model.scene.finite_strain || contact.smoothing != Smoothing::none || contact.is_of_itself();
-  if (has_facets && slides && !contact.segment)
+  const bool is_obstacle = pairing.obstacle >= 0;
+  const bool is_surface = !is_obstacle || has_facets(model.scene.obstacles[pairing.obstacle].shape);
+  const bool slides = model.scene.finite_strain || contact.smoothing != Smoothing::none || contact.is_of_itself() ||
+                      (is_obstacle && model.dimension == 3);
+  if (is_surface && slides && !contact.segment)
     return with_dimension(model.dimension, [&]<int D>() { pair_along_surface<D>(model, points, pairing); });
   if (!contact.segment) return pair_nodes(model, points, pairing);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;

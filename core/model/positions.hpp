@@ -1,4 +1,4 @@
-/// Where the nodes of bodies, the vertices of polylines and the obstacles are: at the start, or displaced.
+/// Where the nodes of bodies, the vertices of obstacles and the obstacles are: at the start, or displaced.
 #pragma once
 
 #include <optional>
@@ -9,12 +9,23 @@
 
 namespace stickslip::detail {
 
+/// Initial position of a vertex of an obstacle that has facets.
+template <int D, class T>
+Vec<T, D> start_of_vertex(const Obstacle& obstacle, const Numbers<T>& numbers, int vertex) {
+  if constexpr (D == 2) {
+    const auto& x = std::get<Polyline>(obstacle.shape).points[vertex];
+    return {numbers(x[0]), numbers(x[1])};
+  } else {
+    const auto x = std::get<RigidFacets>(obstacle.shape).vertices.col(vertex);
+    return {T(x[0]), T(x[1]), T(x[2])};
+  }
+}
+
 /// Initial position of a node, or of a vertex of the polyline that is an obstacle (core/contact/segment.hpp).
 template <class T>
 Vec<T, 2> start_of(const Model& model, int obstacle, const Slots<T>& slots, int node) {
   if (node < model.node_count) return point2(slots.points, node);
-  const auto& x = std::get<Polyline>(model.scene.obstacles[obstacle].shape).points[node - model.node_count];
-  return {slots.numbers(x[0]), slots.numbers(x[1])};
+  return start_of_vertex<2>(model.scene.obstacles[obstacle], slots.numbers, node - model.node_count);
 }
 
 /// Rigid motion of an obstacle: a turn about its centre, then a shift.
@@ -85,16 +96,17 @@ struct Positions {
   Placed<U, T, D> slave(const ContactPoint& point) const {
     return {slots.points.template block<D, 1>(0, point.nodes[0]), motion_of_slave<D>(point)};
   }
-  Placed<U, T> vertex_of_polyline(int obstacle, int number) const {
-    const auto frame_now = frame<2>(obstacle);
-    const Vec<T, 2> X = start_of(model, obstacle, slots, model.node_count + number), u = frame_now.displacement(X);
-    return {X, {U(u[0]), U(u[1])}};
+  /// A vertex of an obstacle that has facets.
+  template <int D = 2>
+  Placed<U, T, D> vertex_of_obstacle(int obstacle, int number) const {
+    const Vec<T, D> X = start_of_vertex<D>(model.scene.obstacles[obstacle], slots.numbers, number),
+                    u = frame<D>(obstacle).displacement(X);
+    return {X, u.template cast<U>()};
   }
   /// A vertex of a surface.
   template <int D = 2>
   Placed<U, T, D> vertex(const MasterSurface& surface, int number) const {
-    if constexpr (D == 2)
-      if (surface.obstacle >= 0) return vertex_of_polyline(surface.obstacle, number);
+    if (surface.is_rigid()) return vertex_of_obstacle<D>(surface.obstacle, number);
     const Vec<T, D> X = slots.points.template block<D, 1>(0, surface.nodes[number]);
     if constexpr (is_start)
       return {X, Vec<U, D>::Constant(U(0))};
@@ -103,7 +115,7 @@ struct Positions {
   }
   /// A node of a body, or a vertex of the polyline that is the obstacle, numbered behind them.
   Placed<U, T> node(int obstacle, int number) const {
-    if (number >= model.node_count) return vertex_of_polyline(obstacle, number - model.node_count);
+    if (number >= model.node_count) return vertex_of_obstacle(obstacle, number - model.node_count);
     const Vec<T, 2> X = point2(slots.points, number);
     if constexpr (is_start)
       return {X, Vec<U, 2>::Constant(U(0))};

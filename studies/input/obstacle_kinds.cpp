@@ -3,8 +3,10 @@
 #include <tuple>
 #include <type_traits>
 
+#include "core/mesh/stl_reader.hpp"
 #include "studies/input/described.hpp"
 #include "studies/input/file_objects.hpp"
+#include "studies/io/atomic_file.hpp"
 #include "studies/io/json_pointer.hpp"
 
 namespace stickslip {
@@ -53,6 +55,47 @@ std::optional<RigidSurface> read_polyline(const JsonNode& node, SceneReading& re
   return polyline;
 }
 
+Schema stl_schema() {
+  return Schema::parse(R"json({
+  "description": "triangles of an STL file; in space alone", "type": "object", "required": ["file"],
+  "examples": [{"file": "tool.stl"}], "additionalProperties": false, "properties": {
+    "file": {
+      "description": "of an STL file, ASCII or binary; its place is from the scene's folder. The solid is behind the triangles, whose corners are counter-clockwise seen from outside",
+      "title": "file name", "type": "string", "examples": ["tool.stl"]},
+    "scale": {
+      "description": "what lengths of the file are multiplied by", "title": "number > 0", "type": "number",
+      "exclusiveMinimum": 0, "default": 1, "examples": [0.001]}}})json");
+}
+
+std::optional<RigidSurface> read_stl_file(const JsonNode& node, SceneReading& reading) {
+  static const Keys keys = keys_of(stl_schema());
+  if (!node.is_object(keys)) return std::nullopt;
+  const auto file = node.find("file");
+  const auto name = file ? file->text() : std::nullopt;
+  double factor = 1;
+  if (const auto scale = node.find("scale")) {
+    const auto given = scale->number(positive);
+    if (!given) return std::nullopt;
+    factor = *given;
+    reading.constants[scale->pointer()] = "of lengths of a file, which are no parameters";
+  }
+  if (!name) return std::nullopt;
+  const std::string path = (reading.folder / *name).lexically_normal().string();
+  constexpr std::uintmax_t most = std::uintmax_t{1} << 28;  // some 5 million triangles
+  if (const std::string fault = unreadable(path, most); !fault.empty()) {
+    file->error("the file " + path + " " + fault);
+    return std::nullopt;
+  }
+  const std::string content = read_file(path);
+  StlSurface surface = read_stl(content, path);
+  for (const auto& error : surface.errors) reading.diagnostics.error({{}, "", error});
+  if (!surface.errors.empty()) return std::nullopt;
+  reading.mesh_fingerprints[*name] = fingerprint(content);
+  RigidFacets facets{factor * surface.vertices, {}};
+  for (const auto& facet : surface.facets) facets.facets.emplace_back(facet.begin(), facet.end());
+  return facets;
+}
+
 json value_json(const Number& number) { return number.value; }
 json value_json(bool flag) { return flag; }
 template <class Vector>
@@ -76,7 +119,11 @@ json as_drawn(const Polyline& polyline) {
   return {{"polyline", {{"points", vertices}}}};
 }
 
+/// (Pictures of space show bodies alone.)
+json as_drawn(const RigidFacets&) { return {{"stl", json::object()}}; }
+
 ObstacleKind entry_of(std::type_identity<Polyline>) { return {"polyline", polyline_schema, read_polyline}; }
+ObstacleKind entry_of(std::type_identity<RigidFacets>) { return {"stl", stl_schema, read_stl_file}; }
 
 template <class S>
 ObstacleKind obstacle_kind(std::type_identity<S>) {

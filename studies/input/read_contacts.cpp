@@ -72,7 +72,7 @@ void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, b
 void read_surface(const JsonNode& node, Contact& contact, const SceneReading& reading) {
   if (node.value() == "faceted") return;
   const auto is_master = [&](const Obstacle& obstacle) {
-    return obstacle.name == contact.master && !std::holds_alternative<Polyline>(obstacle.shape);
+    return obstacle.name == contact.master && !has_facets(obstacle.shape);
   };
   const auto& obstacles = reading.scene.obstacles;
   if (std::any_of(obstacles.begin(), obstacles.end(), is_master)) {
@@ -170,11 +170,11 @@ void read_pairs(const Contact& common, const JsonNode& between, bool self, Scene
     }
 }
 
-/// Whether a master is a side of a body, or a polyline.
-bool has_facets(const std::string& master, const SceneReading& reading) {
+/// Whether a master is a side of a body, or an obstacle that has facets.
+bool is_surface(const std::string& master, const SceneReading& reading) {
   const auto& obstacles = reading.scene.obstacles;
   const auto found = std::find_if(obstacles.begin(), obstacles.end(), [&](const auto& o) { return o.name == master; });
-  return found == obstacles.end() || std::holds_alternative<Polyline>(found->shape);
+  return found == obstacles.end() || has_facets(found->shape);
 }
 
 /// What integration over segments does not go with. `is_solid`: the slave is a side of a solid body.
@@ -227,7 +227,7 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
       between || !slave_side || (is_continuum(slave_side->mesh->shape) && !slave_side->side.facets.empty());
   // Why the defaults: the geometry of integrated contact is continuous, from facet to facet and over ends; so is the
   // normal of a smooth surface. A point that slides over facets has no equilibrium at some of their vertices.
-  const bool is_free = reading.scene.finite_strain && !node.find("surface") && has_facets(contact.master, reading);
+  const bool is_free = reading.scene.finite_strain && !node.find("surface") && is_surface(contact.master, reading);
   contact.segment = is_solid && is_free && reading.dimension() == 2;
   const auto touches_itself = between ? node.find("self") : std::nullopt;
   const bool self = touches_itself && touches_itself->boolean().value_or(false);

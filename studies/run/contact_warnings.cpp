@@ -51,7 +51,7 @@ bool may_overlook_master(const Model& model, int c) {
   const Contact& contact = model.scene.contacts[c];
   const Obstacle* const obstacle = obstacle_of(model, c);
   return model.dimension == 2 && !contact.segment && !contact.is_of_itself() &&
-         (!obstacle || std::holds_alternative<Polyline>(obstacle->shape));
+         (!obstacle || has_facets(obstacle->shape));
 }
 
 /// Normal force of a contact, positive in compression, and the largest penetration of its points.

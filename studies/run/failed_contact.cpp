@@ -89,13 +89,14 @@ Advisable advisable(const Model& model) {
   for (std::size_t c = 0; c < model.scene.contacts.size(); ++c) {
     const auto& contact = model.scene.contacts[c];
     const Obstacle* const obstacle = obstacle_of(model, static_cast<int>(c));
-    const bool facets = !obstacle || std::holds_alternative<Polyline>(obstacle->shape);
+    const bool facets = !obstacle || has_facets(obstacle->shape);
     scene.other_side |= !obstacle && !contact.is_of_itself();
     scene.may_be_smooth |= facets && !contact.segment && contact.smoothing == Smoothing::none;
-    scene.may_be_segments |=
-        facets && !contact.segment && std::any_of(model.points.begin(), model.points.end(), [&](const auto& point) {
-          return point.contact == static_cast<int>(c) && is_continuum(model.bodies[point.slave_body].mesh.shape);
-        });
+    const auto is_of_solid = [&](const ContactPoint& point) {
+      return point.contact == static_cast<int>(c) && is_continuum(model.bodies[point.slave_body].mesh.shape);
+    };
+    scene.may_be_segments |= facets && !contact.segment && model.dimension == 2 &&
+                             std::any_of(model.points.begin(), model.points.end(), is_of_solid);
   }
   return scene;
 }

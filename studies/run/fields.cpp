@@ -158,10 +158,9 @@ std::vector<std::size_t> steps_with_fields(const CaseResult& result, int every) 
 std::string field_file(std::size_t number) { return fmt::format("fields_{:04}.vtu", number); }
 std::string obstacle_file(std::size_t number) { return fmt::format("obstacles_{:04}.vtu", number); }
 
-/// Whether the obstacles are written beside the fields: of several moments, in the plane.
+/// Whether the obstacles are written beside the fields: of several moments.
 bool has_obstacle_files(const CaseResult& result, int every) {
-  const auto& scene = result.problem->model.scene;
-  return every > 0 && !scene.obstacles.empty() && result.problem->model.dimension == 2;
+  return every > 0 && has_obstacle_fields(result.problem->model);
 }
 
 }  // namespace

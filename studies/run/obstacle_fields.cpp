@@ -1,8 +1,11 @@
 #include "studies/run/obstacle_fields.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/model/master_surface.hpp"
+#include "core/model/positions.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/run/side_curve.hpp"
 
@@ -36,10 +39,50 @@ std::vector<Eigen::Vector2d> outline_of(const json& drawn, const Points<double>&
   return out;
 }
 
+/// The facets of obstacles in space; others have none.
+VtuData facets_in_space(const Problem& problem, double time) {
+  const auto& obstacles = problem.model.scene.obstacles;
+  VtuData data;
+  data.time = time;
+  data.points.resize(3, 0);
+  Matrix<double> displacements(3, 0);
+  std::vector<double> owner;
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    if (!has_facets(obstacles[o].shape)) continue;
+    const auto vertices = vertices_of<3>(obstacles[o], problem.slots.numbers);
+    const auto frame = detail::frame_of_obstacle<3>(obstacles[o], time, problem.slots.numbers);
+    const auto first = static_cast<int>(data.points.cols());
+    data.points.conservativeResize(3, first + vertices.cols());
+    displacements.conservativeResize(3, first + vertices.cols());
+    for (Eigen::Index v = 0; v < vertices.cols(); ++v) {
+      const Vec<double, 3> X = vertices.col(v);
+      data.points.col(first + v) = X;
+      displacements.col(first + v) = frame.displacement(X);
+    }
+    for (const auto& facet : facets_of(obstacles[o])) {
+      data.cells.push_back(facet.size() == 3 ? VtuCell::triangle : VtuCell::quad);
+      for (int vertex : facet) data.connectivity.push_back(first + vertex);
+      owner.push_back(static_cast<double>(o));
+    }
+  }
+  data.point_fields.push_back({"displacement", displacements});
+  data.cell_fields.push_back(
+      {"obstacle",
+       Eigen::Map<const Vector<double>>(owner.data(), static_cast<Eigen::Index>(owner.size())).transpose()});
+  return data;
+}
+
 }  // namespace
+
+bool has_obstacle_fields(const Model& model) {
+  const auto& obstacles = model.scene.obstacles;
+  if (model.dimension == 2) return !obstacles.empty();
+  return std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& one) { return has_facets(one.shape); });
+}
 
 VtuData obstacle_fields(const Problem& problem, double time) {
   const auto& scene = problem.model.scene;
+  if (problem.model.dimension == 3) return facets_in_space(problem, time);
   VtuData data;
   data.time = time;
   std::vector<Eigen::Vector2d> points, displacements;

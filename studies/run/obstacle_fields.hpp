@@ -1,4 +1,4 @@
-/// Obstacles as lines with their displacement, for VTU files.
+/// Obstacles with their displacement, for VTU files.
 #pragma once
 
 #include "studies/io/vtu.hpp"
@@ -6,8 +6,11 @@
 
 namespace stickslip {
 
-/// The obstacles of a plane scene as lines at the start, with what they moved by until `time` as point field
-/// `displacement`, length, and their number as cell field `obstacle`.
+/// Whether there are any: obstacles of the plane; in space those that have facets.
+bool has_obstacle_fields(const Model& model);
+
+/// The obstacles of a plane scene as lines at the start, in space their facets; with what they moved by until `time` as
+/// point field `displacement`, length, and their number as cell field `obstacle`.
 VtuData obstacle_fields(const Problem& problem, double time);
 
 }  // namespace stickslip

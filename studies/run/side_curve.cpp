@@ -45,7 +45,7 @@ SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, co
     const PlanePlace x(problem.slots.numbers(polyline.points[v][0]), problem.slots.numbers(polyline.points[v][1]));
     curve.places.col(v) = x + obstacle_displacement(problem, obstacle, x, time);
   }
-  curve.patches = make_surface<2>(facets_of(polyline), contact.smoothing, contact.corner, curve.places);
+  curve.patches = make_surface<2>(facets_of(obstacle), contact.smoothing, contact.corner, curve.places);
   return curve;
 }
 

@@ -112,7 +112,16 @@ void write_solution_mesh(SolutionWriter& out, const Problem& problem) {
     out.quoted(contact.group.empty() ? contact.name : contact.group);
     out.raw(R"(,"slave":)").quoted(contact.slave).raw(R"(,"master":)").quoted(contact.master).raw("}");
   }
-  out.raw("}}");
+  out.raw("}");
+  first = true;
+  for (const auto& obstacle : model.scene.obstacles) {  // (those of the plane stand in the scene)
+    const auto* surface = std::get_if<RigidFacets>(&obstacle.shape);
+    if (!surface) continue;
+    out.raw(std::exchange(first, false) ? R"(,"obstacles":{)" : ",").raw("\n").quoted(obstacle.name);
+    out.raw(R"(:{"vertices":)").list(surface->vertices.colwise(), [&](const auto& x) { out.numbers(x); });
+    out.raw(R"(,"facets":)").list(surface->facets, [&](const auto& facet) { out.numbers(facet); }).raw("}");
+  }
+  out.raw(first ? "}" : "}}");
 }
 
 /// 1 / rho of each point where the traction is that of springs; empty where a multiplier bears it.

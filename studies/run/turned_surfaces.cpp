@@ -30,7 +30,7 @@ class StartingObstacle {
     double gap = 0;
     bool is_inside = false;  ///< of its solid, by more than rounding
   };
-  /// From a place x; none past free ends, and where all places are equally near.
+  /// From a place x; none past free ends, and where all places are equally near. Of facets in space none.
   std::optional<Seen> from(const Vector<double>& x) const {
     std::optional<Seen> seen;
     if (search_) {
@@ -40,7 +40,7 @@ class StartingObstacle {
       const auto foot = foot_on_patch<double>(polyline_.patches[facing.patch], facing.at, place, polyline_.position());
       seen = {foot.normal, foot.gap};
     } else {
-      if (ambiguity(x, shape_, numbers_)) return std::nullopt;
+      if (has_facets(shape_) || ambiguity(x, shape_, numbers_)) return std::nullopt;
       const auto at = against_rigid<double>(x, shape_, numbers_);
       seen = {at.normal, at.gap};
     }

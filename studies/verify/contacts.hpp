@@ -37,7 +37,9 @@ class Contact {
         master_(scene, given, sides.at("slave"), sides.at("master"), segment),
         facets_(body_.in_space() ? Facets{} : facets_of(side_)),
         areas_(areas_of(scene, body_, body_.element == "H27" ? scene.side(sides.at("slave")) : side_)) {
-    if (body_.in_space() && !master_.rigid())
+    if (const auto rigid = scene.faces.find(sides.at("master")); rigid != scene.faces.end())
+      faces_.emplace(rigid->second.vertices, rigid->second.faces, master_.smooth, master_.corner, true);
+    else if (body_.in_space() && !master_.rigid())
       faces_.emplace(scene.points, cut_at_middles(scene.side(sides.at("master"))).edges, master_.smooth, master_.corner,
                      scene.finite);
     for (auto& [node, area] : areas_)
@@ -65,13 +67,14 @@ class Contact {
     Field x = scene_.places(u);  // in the frame of the master
     for (Eigen::Index n = 0; n < x.cols() && scene_.finite; ++n) x.col(n) = master_.motion.back(x.col(n), time);
     master_.place_vertices(x);
-    if (faces_) faces_->place_nodes(x);
+    if (faces_ && !master_.rigid()) faces_->place_nodes(x);
     last = std::exchange(touches, {});
     for (const auto& [node, area] : areas_) {
       Touch& touch = touches[node];
       Seeker point = seeker(node, x);
       point.comes_on = last.contains(node) && !last.at(node).faces;
       touch = segment ? on_pieces(node, x) : Touch{faces_ ? faces_->foot(point) : master_.foot(point), node, area};
+      if (faces_ && master_.rigid()) touch.weights.clear();
       if (!segment) touch.slave.emplace_back(touch.weights.emplace_back(node, 1));
       move(touch, last[node], u, time);
     }
@@ -284,7 +287,7 @@ class Contact {
       touch.normal = motion.turn(time) * touch.normal;
       touch.slip = motion.turn(time) * touch.slip;
       if (faces_ && touch.place.patch >= 0) touch.frame = faces_->frame(touch.place);
-      if (faces_ && on_curve) {
+      if (faces_ && on_curve && !master_.rigid()) {
         const Eigen::JacobiSVD<Mat3> deformed(faces_->frame(last.place) * last.frame.inverse(),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
         turn = deformed.matrixU() * deformed.matrixV().transpose();
@@ -300,7 +303,7 @@ class Contact {
   const Body& body_;
   Side side_;
   Master master_;
-  std::optional<Faces> faces_;  ///< of a master in space that deforms
+  std::optional<Faces> faces_;  ///< of a master in space that deforms, or an obstacle that has facets
   Facets facets_;
   std::map<int, double> areas_;
   std::set<int> corners_;  ///< where the slave side turns by more than 60 degrees

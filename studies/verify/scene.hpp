@@ -288,12 +288,19 @@ inline Facets facets_of(const Side& side) {
   return facets;
 }
 
+/// Facets of an obstacle in space: three or four vertices each, the solid behind them.
+struct RigidFaces {
+  Field vertices;  ///< at the start
+  std::vector<Nodes> faces;
+};
+
 struct Scene {
   Json json;
   bool finite = false, axisymmetric = false, plane_stress = false;
   int dimension = 2;
   Field points;  ///< of all nodes at the start
   std::vector<Body> bodies;
+  std::map<std::string, RigidFaces> faces;  ///< of obstacles that have facets in space
 
   Scene(const Json& scene, const Json& mesh) : json(scene) {
     const std::string space = scene.value("space", "plane_strain");
@@ -312,6 +319,16 @@ struct Scene {
       for (const auto& edge : body.edges) boundary.insert(boundary.end(), edge.begin(), edge.end());
       if (body.solid()) body.sides.try_emplace("boundary", boundary);
       bodies.push_back(std::move(body));
+    }
+    for (const auto& [name, given] : part(mesh, "obstacles").items()) {
+      RigidFaces& made = faces[name];
+      const Json &vertices = given.at("vertices"), &facets = given.at("facets");
+      made.vertices.resize(3, std::ssize(vertices));
+      for (Eigen::Index v = 0; v < made.vertices.cols(); ++v) made.vertices.col(v) = vec3(vertices[v]);
+      for (const auto& facet : facets) made.faces.push_back(facet.get<Nodes>());
+      for (const auto& face : made.faces)
+        for (const int v : face)
+          if (v < 0 || v >= made.vertices.cols()) throw BadFile("the facets of \"" + name + "\" lack a vertex");
     }
   }
   /// That a side expression begins with.

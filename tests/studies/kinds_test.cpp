@@ -109,6 +109,7 @@ void expect_normal(const RigidSurface& surface, const Numbers<double>& numbers) 
 TEST(Kinds, OfSurfacesHaveTheNormalAlongWhichTheirGapGrows) {
   for (const ObstacleKind& kind : obstacle_kinds()) {
     SCOPED_TRACE(kind.key);
+    if (std::string(kind.key) == "stl") continue;  // its facets are in a file (rigid_facets_test.cpp)
     Numbers<double> numbers;
     const RigidSurface surface = example_of(kind, numbers, kind.is_in_plane ? Space::plane_strain : Space::solid);
     if (std::holds_alternative<Polyline>(surface)) continue;  // a place faces one of its facets

@@ -19,7 +19,19 @@ RigidSurface drawn_out(const RigidSurface& surface) {
     return Plane{{plane->point[0], plane->point[1], 0.0}, {plane->normal[0], plane->normal[1], 0.0}};
   if (const auto* circle = std::get_if<Circle>(&surface))
     return Cylinder{{circle->center[0], circle->center[1], 0.0}, {0.0, 0.0, 1.0}, circle->radius, circle->inside};
-  throw std::invalid_argument("extruded: a polyline");
+  // a polyline, drawn out beyond the bodies
+  const auto& polyline = std::get<Polyline>(surface);
+  const auto count = static_cast<int>(polyline.points.size());
+  RigidFacets facets;
+  facets.vertices.resize(3, 2 * count);
+  for (int v = 0; v < count; ++v)
+    for (const int end : {0, 1})
+      facets.vertices.col(2 * v + end) << polyline.points[v][0].value, polyline.points[v][1].value, end == 0 ? -1 : 2;
+  for (int v = 0; v + 1 < count + polyline.closed; ++v) {
+    const int next = (v + 1) % count;
+    facets.facets.push_back({2 * v, 2 * v + 1, 2 * next + 1, 2 * next});
+  }
+  return facets;
 }
 
 void draw_out(std::optional<Rotation>& rotation) {

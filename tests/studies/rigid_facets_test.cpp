@@ -1,0 +1,203 @@
+/// Obstacles of triangles from STL files: a flat one is a plane, a fine ball is a sphere, and certificates hold.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "studies/io/input_fault.hpp"
+#include "studies/run/obstacle_fields.hpp"
+#include "studies/run/run_files.hpp"
+#include "studies/run/solution_file.hpp"
+#include "studies/verify/verify.hpp"
+#include "tests/studies/cases.hpp"
+#include "tests/studies/temporary_folder.hpp"
+#include "tests/support/largest.hpp"
+
+namespace stickslip::rigid_facets_test {
+namespace {
+
+using nlohmann::json;
+using Point = std::array<double, 3>;
+using Triangle = std::array<Point, 3>;
+
+class RigidTriangles : public InOwnFolder {
+ protected:
+  void write(const std::vector<Triangle>& triangles) const {
+    std::ostringstream text;
+    text.precision(17);
+    text << "solid made\n";
+    for (const auto& corners : triangles) {
+      text << "facet normal 0 0 0\nouter loop\n";
+      for (const auto& x : corners) text << "vertex " << x[0] << " " << x[1] << " " << x[2] << "\n";
+      text << "endloop\nendfacet\n";
+    }
+    text << "endsolid\n";
+    std::ofstream(folder_ / "tool.stl") << text.str();
+  }
+  CaseResult run(const json& scene, const std::string& method) const {
+    return cases::run(scene, {{method, json::object()}}, folder_ / "scene.json");
+  }
+  std::string faults(const json& scene) const {
+    try {
+      Problem(cases::read(scene, folder_ / "scene.json").scene);
+    } catch (const std::exception& fault) {
+      return fault.what();
+    }
+    return "none";
+  }
+};
+
+/// A grid of n x n squares in [-2, 3]^2 at the height f(x, y), each cut in two; the solid is below.
+template <class F>
+std::vector<Triangle> floor_of(int n, F&& f) {
+  const auto at = [&](int i, int j) -> Point {
+    const double x = -2 + 5.0 * i / n, y = -2 + 5.0 * j / n;
+    return {x, y, f(x, y)};
+  };
+  std::vector<Triangle> all;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      all.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      all.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return all;
+}
+
+/// A block that is pressed and drawn along two directions over an obstacle that moves and turns.
+json drawn_block(const char* strain, const json& obstacle) {
+  json scene = json::parse(R"({
+    "space": "solid",
+    "bodies": {"body": {"mesh": {"box": {"min": [0, 0, 0], "max": [1.1, 0.9, 0.6], "cells": [3, 2, 2]}},
+                        "material": {"neo_hookean": {"E": 1000, "nu": 0.3}}}},
+    "obstacles": {"tool": {"move": {"z": [[0, 0], [1, 0.02]], "y": [[1, 0], [2, 0.1]]}}},
+    "contacts": {"sole": {"slave": "body.bottom", "master": "tool", "friction": 0.3}},
+    "supports": [{"on": "body.top", "move": {"x": [[1, 0], [2, 0.4]], "y": 0, "z": [[0, 0], [1, -0.06]]}}],
+    "time": {"legs": [[1, 2], [2, 4]]},
+    "responses": {"N": {"contact_force": {"contact": "sole", "component": "normal"}},
+                  "x": {"contact_force": {"contact": "sole", "component": "x"}},
+                  "y": {"contact_force": {"contact": "sole", "component": "y"}},
+                  "D": {"dissipation": {"contact": "sole"}}},
+    "method": {"monolithic_al": {}},
+    "parameters": {"mu": "/contacts/sole/friction", "E": "/bodies/body/material/neo_hookean/E",
+                   "up": "/obstacles/tool/move/z/1/1", "drawn": "/supports/0/move/x/1/1"}})");
+  scene["strain"] = strain;
+  if (std::string(strain) == "small")
+    scene["bodies"]["body"]["material"] = {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}};
+  if (std::string(strain) == "small") scene["parameters"]["E"] = "/bodies/body/material/linear_elastic/E";
+  scene["obstacles"]["tool"].update(obstacle);
+  return scene;
+}
+
+const json skew_turn = json::parse(R"({"center": [0.5, 0.4, -0.2], "axis": [0.2, 0, 1], "angle": [[1, 0], [2, 5]]})");
+const json stl = {{"stl", {{"file", "tool.stl"}}}};
+
+TEST_F(RigidTriangles, ThatLieInAPlaneAreThePlane) {
+  write(floor_of(7, [](double x, double y) { return 0.05 * x - 0.02 * y - 0.001; }));
+  const json plane = {{"plane", {{"point", {0, 0, -0.001}}, {"normal", {-0.05, 0.02, 1}}}}};
+  for (const char* strain : {"small", "finite"})
+    for (const char* method : {"penalty", "uzawa_al", "monolithic_al"})
+      for (const json& surface : {json("faceted"), json("smooth")}) {
+        SCOPED_TRACE(std::string(strain) + method + surface.dump());
+        json on_facets = drawn_block(strain, stl);
+        on_facets["contacts"]["sole"]["surface"] = surface;
+        for (const json& turn :
+             {json(), json::parse(R"({"center": [0.5, 0.4, -0.2], "axis": [0.2, 0, 1], "angle": [[1, 0], [2, 5]]})")}) {
+          json on_plane = drawn_block(strain, plane);
+          if (!turn.is_null())
+            on_facets["obstacles"]["tool"]["rotate"] = on_plane["obstacles"]["tool"]["rotate"] = turn;
+          const auto expected = run(on_plane, method), found = run(on_facets, method);
+          ASSERT_EQ(found.status(), Status::converged) << found.message();
+          ASSERT_EQ(found.steps.size(), expected.steps.size());
+          for (std::size_t n = 0; n < found.steps.size(); ++n) {
+            const auto &of = found.steps[n], &wanted = expected.steps[n];
+            // responses are 10 to 100; Uzawa's method ends within 1e-8 of its solution, derivatives of it within 1e-6
+            EXPECT_LE(largest_entry(of.responses - wanted.responses), 1e-6) << n;
+            ASSERT_EQ(of.sensitivities.size(), wanted.sensitivities.size());
+            const double size = largest_entry(wanted.sensitivities);
+            EXPECT_LE(largest_entry(of.sensitivities - wanted.sensitivities), 1e-6 * size) << n;
+          }
+        }
+      }
+}
+
+/// The force of a block on a smooth hill of triangles comes to that on the sphere which the hill is cut from.
+TEST_F(RigidTriangles, OfABallComeToTheSphere) {
+  constexpr double R = 6;
+  const json sphere = {{"sphere", {{"center", {0.5, 0.4, -R}}, {"radius", R}}}};
+  const auto hill = [](double x, double y) {
+    return std::sqrt(R * R - std::pow(x - 0.5, 2) - std::pow(y - 0.4, 2)) - R;
+  };
+  const auto expected = run(drawn_block("finite", sphere), "monolithic_al");
+  ASSERT_EQ(expected.status(), Status::converged) << expected.message();
+  std::vector<double> errors;
+  for (const int n : {10, 20, 40}) {
+    write(floor_of(n, hill));
+    const auto found = run(drawn_block("finite", stl), "monolithic_al");
+    ASSERT_EQ(found.status(), Status::converged) << found.message();
+    const auto &of = found.steps.back().responses, &wanted = expected.steps.back().responses;
+    errors.push_back(largest_entry(of - wanted) / largest_entry(wanted));
+  }
+  EXPECT_LT(errors[0], 2e-2);  // edges of 0.5 sag by 0.5^2 / (8 R) = 0.005, where the block sinks in by 0.08
+  for (std::size_t k = 1; k < errors.size(); ++k) EXPECT_LT(errors[k], errors[k - 1] / 3);  // second order
+}
+
+TEST_F(RigidTriangles, HaveCertificates) {
+  write(floor_of(9, [](double x, double y) { return -0.02 * (x - 0.6) * (x - 0.6) - 0.03 * (y - 0.3) * (y - 0.3); }));
+  for (const char* strain : {"small", "finite"})
+    for (const json& surface : {json("faceted"), json("smooth"), json{{"smooth", "b_spline"}}}) {
+      SCOPED_TRACE(strain + surface.dump());
+      json scene = drawn_block(strain, stl);
+      scene["contacts"]["sole"]["surface"] = surface;
+      scene["obstacles"]["tool"]["rotate"] = skew_turn;
+      const auto result = run(scene, "monolithic_al");
+      ASSERT_EQ(result.status(), Status::converged) << result.message();
+      scene["method"] = {{"monolithic_al", json::object()}};
+      const json solution = json::parse(solution_file(result, scene).text);
+      const auto certificate =
+          verify::certify(scene, solution.at("mesh"), solution, json::parse(result_json(result, "").dump()));
+      for (const auto& step : certificate.steps)
+        EXPECT_TRUE(step.holds()) << step.worst().law << " " << step.worst().where << " " << step.worst().share();
+      json lifted = solution;  // a surface that is elsewhere makes other forces
+      for (auto& vertex : lifted["mesh"]["obstacles"]["tool"]["vertices"]) vertex[2] = vertex[2].get<double>() + 1e-4;
+      EXPECT_FALSE(verify::certify(scene, lifted.at("mesh"), lifted, json::object()).holds());
+    }
+}
+
+TEST_F(RigidTriangles, AreScaledAndDrawnWhereTheyHaveMoved) {
+  write(floor_of(1, [](double, double) { return 0.0; }));
+  json scene = drawn_block("finite", {{"stl", {{"file", "tool.stl"}, {"scale", 10}}}});
+  const Problem problem(cases::read(scene, folder_ / "scene.json").scene);
+  ASSERT_TRUE(has_obstacle_fields(problem.model));
+  const auto fields = obstacle_fields(problem, 2);
+  ASSERT_EQ(fields.points.cols(), 4);
+  for (Eigen::Index v = 0; v < 4; ++v)
+    for (int i = 0; i < 3; ++i)
+      EXPECT_TRUE(i == 2 ? fields.points(i, v) == 0 : fields.points(i, v) == -20 || fields.points(i, v) == 30);
+  EXPECT_EQ(fields.cells.size(), 2u);
+  for (Eigen::Index v = 0; v < 4; ++v)
+    EXPECT_LE((fields.point_fields.at(0).values.col(v) - Eigen::Vector3d(0, 0.1, 0.02)).norm(), 1e-15);
+}
+
+TEST_F(RigidTriangles, AreRefusedWithTheFaultOfTheFile) {
+  const json scene = drawn_block("finite", stl);
+  EXPECT_THAT(faults(scene), testing::HasSubstr("tool.stl"));  // there is none
+  std::ofstream(folder_ / "tool.stl") << "solid\nfacet normal 0 0 one\n";
+  EXPECT_THAT(faults(scene), testing::HasSubstr("tool.stl:2:18: a number should stand here; found \"one\""));
+  auto turned = floor_of(2, [](double, double) { return 0.0; });
+  std::swap(turned[3][0], turned[3][1]);
+  write(turned);
+  EXPECT_THAT(faults(scene), testing::HasSubstr("no surface that bodies can slide on"));
+  write(floor_of(2, [](double, double) { return 0.0; }));
+  json in_plane = scene;
+  in_plane["space"] = "plane_strain";
+  EXPECT_THAT(faults(in_plane), testing::HasSubstr("a stl needs the space solid"));
+  json scaled = scene;
+  scaled["parameters"]["scale"] = "/obstacles/tool/stl/scale";
+  scaled["obstacles"]["tool"]["stl"]["scale"] = 2;
+  EXPECT_THAT(faults(scaled), testing::HasSubstr("no parameters"));
+}
+
+}  // namespace
+}  // namespace stickslip::rigid_facets_test
