@@ -230,7 +230,9 @@ TEST(NeverCloses, NamesTheLeastDistanceOfTheRun) {
 }
 
 TEST(NeverCloses, AsksForOneUnitWhereABodyIsTiny) {
-  const auto far = contacts_never_closed(run(held_block(150, -0.05), "monolithic_al"));
+  json scene = held_block(0.125, -0.05);
+  scene["obstacles"]["floor"] = {{"plane", {{"point", {0, -150}}, {"normal", {0, 1}}}}};
+  const auto far = contacts_never_closed(run(scene, "monolithic_al"));
   ASSERT_EQ(far.size(), 1u);
   EXPECT_THAT(far[0].remedy, HasSubstr("times the size of the slave's body: give all lengths in one unit"));
   const auto near = contacts_never_closed(run(held_block(0.125, -0.05), "monolithic_al"));

@@ -193,6 +193,7 @@ TEST(ContactWarnings, NameTheSideToTakeInSpaceToo) {
              turned = {{"plane", {{"point", {0, 0, 0}}, {"normal", {0, 0, -1}}}}};
   const json held = {{"on", "b.left"}, {"move", {{"x", 0}, {"y", 0}, {"z", 0}}}};
   json scene = block_on_ground(above, held);
+  scene["space"] = "solid";
   scene["bodies"]["b"]["mesh"] = {{"box", {{"min", {0, 0, 0}}, {"max", {1, 1, 1}}, {"cells", {2, 2, 2}}}}};
   scene["contacts"]["s"]["slave"] = "b.top";
   const auto far_side = of_code(run(scene), WarningCode::turned_surface);
