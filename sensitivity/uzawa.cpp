@@ -134,6 +134,20 @@ SchemeEquilibrium scheme_equilibrium(const UzawaAL& method, const Problem& probl
   return {method, at.state, oversize, {}, std::move(rho), std::move(state)};
 }
 
+/// Per parameter: largest derivative of the place of a contact node. In space a foot is a place of its surface, and
+/// rounds as the place of the node does. Elsewhere Dg has displacements alone, and this is zero.
+Vector<double> largest_shift(const Differentiation& problem) {
+  Vector<double> largest = Vector<double>::Zero(problem.parameters);
+  const Model& model = problem.model;
+  if (model.dimension != 3 || model.surfaces.empty()) return largest;
+  for (const auto& block : problem.blocks)
+    for (std::size_t d = 0; d < block.parameters.size(); ++d)
+      for (int node : model.contact_nodes)
+        for (const Direction& x : block.slots.points.col(node))
+          largest[block.parameters[d]] = std::max(largest[block.parameters[d]], std::abs(x.d[d]));
+  return largest;
+}
+
 /// Iterates D lambda <- D t until each parameter has ended. False if the passes reach their limit, or if a tangent is
 /// singular. `change`: largest change of D lambda in a pass; q: ratio of the last two changes; `floors`: what rounding
 /// of rho Dg makes of a change. A parameter ends in one of four cases:
@@ -166,6 +180,7 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
   Matrix<double> at_least;                        // D lambda after it
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
   auto& record = problem.record.emplace();
+  const Vector<double> shift = largest_shift(problem);
   detail::PassConvergence convergence;
   for (int pass = 1; pass <= detail::PassConvergence::limit; ++pass) {
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });
@@ -173,7 +188,7 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
     const Matrix<double> after = columns([&](auto&, int b) -> auto& { return linearised.fields()[b].traction; });
     update_derivatives(lambda, linearised.fields());
     const Vector<double> floors =
-        8 * unit_roundoff * (stiffest * linearised.largest_motion() + rho_over_k * linearised.load());
+        8 * unit_roundoff * (stiffest * (linearised.largest_motion() + shift) + rho_over_k * linearised.load());
     bool converged = true;
     double slowest = 0;  // largest change / enough of a parameter that has not ended
     record = {.passes = pass};
