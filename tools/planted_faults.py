@@ -144,7 +144,7 @@ FAULTS = [
     ("rigid facets that stay where they were", "core/model/facings_impl.hpp",
      "at.col(v) = place({X, <<<frame.displacement(X)>>>});", "Vec<T, D>(Vec<T, D>::Constant(T(0)))"),
     ("an STL file's triangles without its scale", "studies/input/obstacle_kinds.cpp",
-     "RigidFacets facets{<<<factor>>> * surface.vertices, {}};", "1.0"),
+     "RigidFacets facets{<<<*factor>>> * surface.vertices, {}};", "1.0"),
     ("cylinder that does not see its axis", "core/contact/cylinder.hpp",
      "return x - <<<dot(x, axis)>>> * axis;", "T(0)"),
     ("bar's weight without its area", "core/model/load_vector_impl.hpp",

@@ -7,8 +7,8 @@
 ///                      displacement w adds, so that a small displacement keeps its digits far from the origin
 ///   ambiguous_at()     only if it has a place from which no part of it is nearer than another
 ///
-/// What it lacks does not compile. A polyline has facets in place of against(): which one a place faces is found by
-/// search (core/contact/facet_search.hpp, surface_search.hpp).
+/// What it lacks does not compile. A polyline, and facets in space, have no against(): which facet a place faces is
+/// found by search (core/contact/facet_search.hpp, surface_search.hpp).
 #pragma once
 
 #include <array>

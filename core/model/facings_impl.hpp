@@ -65,7 +65,7 @@ struct MovedSurface {
       for (int v = 0; v < surface.vertex_count; ++v) at.col(v) = place(positions().template vertex<D>(surface, v));
       return at;
     }
-    const Obstacle& obstacle = input.model.scene.obstacles[surface.obstacle];
+    const Obstacle& obstacle = input.model.scene.obstacles[surface.obstacle];  // (one frame for all of its vertices)
     const auto frame = positions().template frame<D>(surface.obstacle);
     for (int v = 0; v < surface.vertex_count; ++v) {
       const Vec<T, D> X = start_of_vertex<D>(obstacle, input.slots.numbers, v);

@@ -9,7 +9,6 @@
 #include "core/mesh/split.hpp"
 #include "studies/input/described.hpp"
 #include "studies/input/file_objects.hpp"
-#include "studies/io/atomic_file.hpp"
 
 namespace stickslip {
 namespace {
@@ -67,18 +66,15 @@ const std::vector<MeshKind>& mesh_kinds() {
 
 /// The mesh file's content, read at most once; none where it cannot be read.
 const MeshFile* mesh_file(const JsonNode& node, const std::string& name, SceneReading& reading) {
-  const std::string path = (reading.folder / name).lexically_normal().string();
+  const std::string path = reading.path_of(name);
   const std::pair of_space{path, reading.dimension()};
   auto found = reading.mesh_files.find(of_space);
   if (found == reading.mesh_files.end()) {
     constexpr std::uintmax_t most = std::uintmax_t{1} << 30;  // some 10 million nodes
-    if (const std::string fault = unreadable(path, most); !fault.empty()) {
-      node.error("the mesh file " + path + " " + fault);
-      return nullptr;
-    }
-    const std::string text = read_file(path);
-    std::istringstream content(text);
-    const MeshFile file{read_msh(content, path, reading.dimension()), fingerprint(text)};
+    const auto text = reading.content_of(node, name, "mesh", most);
+    if (!text) return nullptr;
+    std::istringstream content(*text);
+    const MeshFile file{read_msh(content, path, reading.dimension()), fingerprint(*text)};
     found = reading.mesh_files.emplace(of_space, file).first;
   }
   reading.mesh_fingerprints[name] = found->second.fingerprint;

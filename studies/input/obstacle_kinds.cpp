@@ -6,7 +6,6 @@
 #include "core/mesh/stl_reader.hpp"
 #include "studies/input/described.hpp"
 #include "studies/input/file_objects.hpp"
-#include "studies/io/atomic_file.hpp"
 #include "studies/io/json_pointer.hpp"
 
 namespace stickslip {
@@ -72,26 +71,18 @@ std::optional<RigidSurface> read_stl_file(const JsonNode& node, SceneReading& re
   if (!node.is_object(keys)) return std::nullopt;
   const auto file = node.find("file");
   const auto name = file ? file->text() : std::nullopt;
-  double factor = 1;
-  if (const auto scale = node.find("scale")) {
-    const auto given = scale->number(positive);
-    if (!given) return std::nullopt;
-    factor = *given;
-    reading.constants[scale->pointer()] = "of lengths of a file, which are no parameters";
-  }
-  if (!name) return std::nullopt;
-  const std::string path = (reading.folder / *name).lexically_normal().string();
+  const auto scale = node.find("scale");
+  if (scale) reading.constants[scale->pointer()] = "of lengths of a file, which are no parameters";
+  const auto factor = scale ? scale->number(positive) : 1;
+  if (!name || !factor) return std::nullopt;
   constexpr std::uintmax_t most = std::uintmax_t{1} << 28;  // some 5 million triangles
-  if (const std::string fault = unreadable(path, most); !fault.empty()) {
-    file->error("the file " + path + " " + fault);
-    return std::nullopt;
-  }
-  const std::string content = read_file(path);
-  StlSurface surface = read_stl(content, path);
+  const auto content = reading.content_of(*file, *name, "STL", most);
+  if (!content) return std::nullopt;
+  StlSurface surface = read_stl(*content, reading.path_of(*name));
   for (const auto& error : surface.errors) reading.diagnostics.error({{}, "", error});
   if (!surface.errors.empty()) return std::nullopt;
-  reading.mesh_fingerprints[*name] = fingerprint(content);
-  RigidFacets facets{factor * surface.vertices, {}};
+  reading.mesh_fingerprints[*name] = fingerprint(*content);
+  RigidFacets facets{*factor * surface.vertices, {}};
   for (const auto& facet : surface.facets) facets.facets.emplace_back(facet.begin(), facet.end());
   return facets;
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "studies/input/file_objects.hpp"
+#include "studies/io/atomic_file.hpp"
 #include "studies/io/printing.hpp"
 
 namespace stickslip {
@@ -136,6 +137,15 @@ std::optional<int> SceneReading::count(const JsonNode& node, int least) {
 std::optional<double> SceneReading::setting(const JsonNode& node, const Rule& rule) {
   constants[node.pointer()] = "a setting of the method, which the solution does not depend on";
   return node.number(rule);
+}
+
+std::optional<std::string> SceneReading::content_of(const JsonNode& node, const std::string& name,
+                                                    const std::string& what, std::uintmax_t most) {
+  const std::string path = path_of(name);
+  const std::string fault = unreadable(path, most);
+  if (fault.empty()) return read_file(path);
+  node.error("the " + what + " file " + path + " " + fault);
+  return std::nullopt;
 }
 
 std::string SceneReading::sides_called(const std::string& name) const {

@@ -1,6 +1,7 @@
 /// What the parts of the scene reader share while a scene grows.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -71,6 +72,12 @@ struct SceneReading {
   std::optional<double> time(const JsonNode&, const Rule&);
   std::optional<int> count(const JsonNode&, int least);
   std::optional<double> setting(const JsonNode&, const Rule&);
+
+  /// Where a file is that the scene names.
+  std::string path_of(const std::string& name) const { return (folder / name).lexically_normal().string(); }
+  /// The content of such a file; none, reported, where it cannot be read or has more than `most` bytes. `what`: "mesh".
+  std::optional<std::string> content_of(const JsonNode&, const std::string& name, const std::string& what,
+                                        std::uintmax_t most);
 
   /// "; did you mean "BODY.NAME"?" of the bodies that have a side of this name; "" where none has.
   std::string sides_called(const std::string& name) const;

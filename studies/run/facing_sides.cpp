@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/contact/surfaces.hpp"
 #include "core/model/pairing.hpp"
 
 namespace stickslip {
@@ -37,15 +38,8 @@ double distance(const std::vector<MiddleOfFacet>& one, const std::vector<MiddleO
 }  // namespace
 
 Vector<double> outward_normal(const Points<double>& points, const std::vector<int>& facet) {
-  if (points.rows() == 2) {
-    const Vector<double> along = points.col(facet[1]) - points.col(facet[0]);
-    return Eigen::Vector2d(along[1], -along[0]);
-  }
-  Eigen::Vector3d twice = Eigen::Vector3d::Zero();
-  const Eigen::Vector3d corner = points.col(facet[0]);
-  for (std::size_t k = 1; k + 1 < facet.size(); ++k)
-    twice += (points.col(facet[k]) - corner).head<3>().cross((points.col(facet[k + 1]) - corner).head<3>());
-  return twice / 2;
+  return with_dimension(static_cast<int>(points.rows()),
+                        [&]<int D>() { return Vector<double>(slave_normal<D>({facet}, points)); });
 }
 
 std::map<int, Vector<double>> outward_normals(const Points<double>& points, const SideSet& side) {
