@@ -92,7 +92,7 @@ class ChangeReader {
     const auto& point = model_.points[p];
     const auto& slots = of_.block.slots;
     if (point.master == Master::facet) {
-      const auto place = [&](int node) { return detail::start_of(model_, point.obstacle, slots, node); };
+      const auto place = [&](int node) { return detail::start_of<2>(model_, point.obstacle, slots, node); };
       const auto c = place(point.corners[0]), x = place(point.nodes[0]);
       const Vec<Direction, 2> along = place(point.corners[1]) - c;
       const Direction length = norm(along), way = dot(Vec<Direction, 2>(x - c), along) / length;

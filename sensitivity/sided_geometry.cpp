@@ -16,7 +16,8 @@ namespace {
 /// its segment may end there. Of what moves with displacements see VertexTie and EdgeTie.
 bool may_leave(const Model& model, const ContactPoint& point) {
   using Master = ContactPoint::Master;
-  if (point.master == Master::segments) return point.surface < 0 && point.segments[0].master[0] != Segment::none;
+  if (!point.overlaps.empty()) return point.overlaps[0].master.corners > 0;
+  if (point.is_integrated()) return point.surface < 0 && point.segments[0].master[0] != Segment::none;
   return point.master != Master::obstacle && !model.slides_on_surfaces();
 }
 
@@ -24,7 +25,7 @@ bool same_part(const ContactPoint& a, const ContactPoint& b) {
   const bool same_faces = std::equal(a.faces.begin(), a.faces.end(), b.faces.begin(), b.faces.end(),
                                      [](const auto& one, const auto& other) { return one.is_part_of(other); });
   return a.master == b.master && a.nodes == b.nodes && a.corners == b.corners && a.segments == b.segments &&
-         a.facing.patch == b.facing.patch && same_faces;
+         a.overlaps == b.overlaps && a.facing.patch == b.facing.patch && same_faces;
 }
 
 /// The point with the same slave node; nullptr if there is none.

@@ -105,7 +105,7 @@ double integration_margin(const Model& model, const Slots<double>& slots, const 
   for (int c = 0; c < static_cast<int>(model.surfaces.size()); ++c) {
     const auto& curve = model.surfaces[c];
     if (!model.slides_on_surfaces() || !curve.is_integrated()) continue;
-    const auto of_start = [&](int node) -> Place { return detail::start_of(model, curve.obstacle, slots, node); };
+    const auto of_start = [&](int node) -> Place { return detail::start_of<2>(model, curve.obstacle, slots, node); };
     const auto present = [&](int node) -> Placed<double> {
       if (node >= model.node_count) return positions.vertex_of_obstacle(curve.obstacle, node - model.node_count);
       return {of_start(node), state.displacement.segment<2>(2 * static_cast<Eigen::Index>(node))};

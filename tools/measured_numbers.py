@@ -213,9 +213,9 @@ def written(value, like):
 
 
 def bound_of(value):
-    """The next of 1, 2, 5, 10, ... above a value, with some room."""
-    power = 10.0 ** math.floor(math.log10(1.2 * value))
-    return next(step * power for step in (1, 2, 5, 10) if step * power >= 1.2 * value)
+    """The next of 1, 2, 5, 10, ... above three times a value: what rounding decides differs between machines."""
+    power = 10.0 ** math.floor(math.log10(3 * value))
+    return next(step * power for step in (1, 2, 5, 10) if step * power >= 3 * value)
 
 
 def agrees(sign, shown, value):

@@ -45,10 +45,10 @@
 #include <optional>
 #include <vector>
 
+#include "core/contact/contact_integrals.hpp"
 #include "core/contact/placed.hpp"
 #include "core/contact/segment.hpp"
 #include "core/contact/segment_facets.hpp"
-#include "core/contact/surfaces.hpp"
 #include "core/mesh/mesh.hpp"
 #include "core/solids/edges.hpp"
 
@@ -73,16 +73,6 @@ std::vector<Segment> facing_segments(const Points<double>& points, const std::ar
                                      const std::vector<std::vector<int>>& masters, const std::vector<int>& ends = {},
                                      const std::vector<double>& depths = {});
 
-/// Weight of what faces a slave facet, by the cosine c with which their normals oppose one another: 0 at
-/// least_against_a_side, 1 from twice that on, s^2 (3 - 2 s) between them, s from 0 to 1. Why: beyond the corner of a
-/// block a slave facet that dips below its sole sees the wall, far away. This would lift the mean gap, so that the node
-/// lost its force; and if the wall counted at once, the gap would jump as the facet turns.
-template <class T>
-T weight_of_angle(const Vec<T, 2>& slave_normal, const Vec<T, 2>& master_normal) {
-  const T s = (-dot(slave_normal, master_normal) - T(least_against_a_side)) / T(least_against_a_side);
-  return value(s) <= 0 ? T(0) : value(s) >= 1 ? T(1) : T(s * s * (T(3) - T(2) * s));
-}
-
 /// A Gauss point of a segment.
 template <class T>
 struct IntegrationPoint {
@@ -90,28 +80,6 @@ struct IntegrationPoint {
   T slave_length{};  ///< initial length of the slave facet
   T area{};          ///< psi dA times the Gauss weight and weight_of_angle()
   detail::Foot<T> foot;
-};
-
-/// Integrals over the segments of one contact point.
-template <class T>
-struct SegmentIntegrals {
-  T area{};                                                 ///< A_j
-  decltype(PointGeometry<T>::weights) weights;              ///< A_j times the weights of w_j
-  Vec<T, 2> gap = Vec<T, 2>::Constant(T(0)), normal = gap;  ///< int psi (x - y) dA, and int psi (n_m - n_s) dA
-
-  /// Geometry of the contact point with the normal n / |n|.
-  PointGeometry<T> geometry(const Vec<T, 2>& n) const {
-    PointGeometry<T> g;
-    g.area = area;
-    g.weights = weights;
-    for (auto& w : g.weights) w /= area;
-    const T length = norm(n);
-    g.normal.resize(2);
-    g.normal << n[0] / length, n[1] / length;
-    g.gap = (gap[0] * g.normal[0] + gap[1] * g.normal[1]) / area;
-    g.tangents = detail::tangent_frame<T>(g.normal);
-    return g;
-  }
 };
 
 /// Integrals over segments.
@@ -125,12 +93,12 @@ struct SegmentIntegrals {
 /// A master whose nodes are not among `nodes` is rigid: it has no weights, and the normal is its own.
 ///   visit(segment, facets, IntegrationPoint)  called at each Gauss point. facets: optional FacingFacets
 template <class T, class S, class Position, class RigidFoot, class Visit>
-SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, const std::vector<int>& nodes,
-                                       Position&& position, const Depth<T>& depth, RigidFoot&& rigid_foot,
-                                       Visit&& visit) {
+ContactIntegrals<T, 2> integrate_segments(const std::vector<Segment>& segments, const std::vector<int>& nodes,
+                                          Position&& position, const Depth<T>& depth, RigidFoot&& rigid_foot,
+                                          Visit&& visit) {
   static constexpr double gauss[3] = {-0.7745966692414834, 0, 0.7745966692414834};  // exact to degree 5; 3 is needed
   static constexpr double weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-  SegmentIntegrals<T> sums;
+  ContactIntegrals<T, 2> sums;
   sums.weights = decltype(sums.weights)::Constant(static_cast<Eigen::Index>(nodes.size()), T(0));
   const auto place = [&](int node) { return std::find(nodes.begin(), nodes.end(), node) - nodes.begin(); };
   const auto share = [&](int node, const T& w) { sums.weights[place(node)] += w; };
@@ -164,7 +132,7 @@ SegmentIntegrals<T> integrate_segments(const std::vector<Segment>& segments, con
           facets ? detail::foot_on_facet<T, S>(*facets, s, at.moved, slave.bulge.is_curved)
                  : rigid_foot(at.start, Vec<T, 2>(slave.a.moved + at.moved));
       const T psi = segment.sole_carrier ? T(1) : segment.carrier == 0 ? T(1) - s : s;
-      const T angle = facets ? weight_of_angle<T>(at.normal, foot.normal) : T(1);
+      const T angle = facets ? weight_of_angle<2, T>(at.normal, foot.normal) : T(1);
       const T dA = point.area = psi * (to - from) * at.stretch * T(weight[q]) * depth.at(at.start[0]) * angle;
       sums.area += dA;
       share_along(segment.slave, segment.slave_edge, slave.bulge.is_curved, s, dA);

@@ -6,8 +6,7 @@ namespace stickslip {
 namespace {
 
 bool integrates(const Model& model) {
-  return std::any_of(model.points.begin(), model.points.end(),
-                     [](const auto& point) { return !point.segments.empty(); });
+  return std::any_of(model.points.begin(), model.points.end(), [](const auto& point) { return point.is_integrated(); });
 }
 
 /// Slip couples the normal into the tangential rows, and not the other way round: the tangent is unsymmetric. It is

@@ -2,6 +2,7 @@
 /// evaluation serves all: the initial geometry, which is kept at small strain, is that at the positions of the start.
 #pragma once
 
+#include "core/contact/overlaps.hpp"
 #include "core/model/master_geometry.hpp"
 
 namespace stickslip::detail {
@@ -72,7 +73,7 @@ PlacedPoint<U, D> place_point(const Positions<U, T, Displacement>& positions, co
                               const Facing& facing, const Earlier<T>& earlier = {}) {
   if (point.surface >= 0 && facing.patch == no_patch) return off_master<D>(positions, point, facing, earlier);
   if constexpr (D == 2)
-    if (!point.segments.empty()) return on_segments(positions, point, facing, earlier);
+    if (point.is_integrated()) return on_segments(positions, point, facing, earlier);
   if (point.surface >= 0) return on_master<D>(positions, point, facing, earlier);
   return on_obstacle<D>(positions, point, earlier);
 }
@@ -80,7 +81,7 @@ PlacedPoint<U, D> place_point(const Positions<U, T, Displacement>& positions, co
 /// Geometry against the facet or the vertex that a point faces for good.
 template <class T>
 PointGeometry<T> on_corners(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
-  const auto place = [&](int node) { return start_of(model, point.obstacle, slots, node); };
+  const auto place = [&](int node) { return start_of<2>(model, point.obstacle, slots, node); };
   const auto corner = [&](int k) { return place(point.corners[k]); };
   const Vec<T, 2> x = place(point.nodes[0]);
   const bool at_facet = point.master == ContactPoint::Master::facet;
@@ -89,6 +90,21 @@ PointGeometry<T> on_corners(const Model& model, const ContactPoint& point, const
   if (point.obstacle >= 0) return fixed(std::move(geometry));
   for (std::size_t n = 2; !at_facet && n < point.nodes.size(); ++n)
     slide_off<T>(geometry, x, corner(1), place(point.nodes[n]));
+  return geometry;
+}
+
+/// Geometry of a point that is integrated over overlaps.
+template <class T>
+PointGeometry<T> over_overlaps(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
+  const auto position = [&](int node) -> Vec<T, 3> { return start_of<3>(model, point.obstacle, slots, node); };
+  const auto foot = [&](const Vec<T, 3>& X) {
+    const auto number = [&](const Number& n) { return slots.numbers(n); };
+    const auto& shape = model.scene.obstacles[point.obstacle].shape;
+    return against_rigid<T>(X, shape, number);
+  };
+  const auto sums = integrate_overlaps<T>(point.overlaps, point.nodes, position, foot);
+  PointGeometry<T> geometry = sums.geometry(sums.normal);
+  geometry.gap += offset_of(point, model, slots);
   return geometry;
 }
 
@@ -105,6 +121,8 @@ PointGeometry<T> initial_geometry(const Model& model, const ContactPoint& point,
                                       [&](int n) { return node.template operator()<3>(n); });
     geometry.gap += offset_of(point, model, slots);
     geometry.area = whole_area(point, slots);
+  } else if (!point.overlaps.empty()) {
+    return over_overlaps(model, point, slots);
   } else {
     with_dimension(model.dimension, [&]<int D>() {
       auto at = place_point<D>(positions_of_start(model, slots), point, point.facing);
@@ -136,7 +154,7 @@ Vector<T> spin(const Model& model, int p, const Slots<T>& slots) {
   const bool at_vertex = point.master == ContactPoint::Master::vertex;
   for (int i = 0; i < model.dimension; ++i) {
     if (at_vertex) {
-      foot[i] = start_of(model, point.obstacle, slots, point.corners[1])[i];
+      foot[i] = start_of<2>(model, point.obstacle, slots, point.corners[1])[i];
       continue;
     }
     for (int n = 0; n < point.slave_nodes; ++n) foot[i] += geometry.weights[n] * slots.points(i, point.nodes[n]);

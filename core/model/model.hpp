@@ -13,6 +13,7 @@
 
 #include "core/contact/contact_point.hpp"
 #include "core/contact/face.hpp"
+#include "core/contact/overlap.hpp"
 #include "core/contact/own_vertex.hpp"
 #include "core/contact/surface.hpp"
 #include "core/mesh/mesh.hpp"
@@ -81,7 +82,7 @@ struct MasterSurface {
 /// One slave node and its master. At small strain it does not change.
 struct ContactPoint {
   /// Kind of master. facet, vertex: of a deformable side or a polyline; faces: of a deformable side in space; surface:
-  /// patches of a MasterSurface; segments: mortar segments.
+  /// patches of a MasterSurface; segments: of any kind, by integrals over mortar segments, in space over overlaps.
   enum class Master { obstacle, facet, vertex, faces, segments, surface };
   Master master = Master::obstacle;
   int contact = 0;                  ///< index in Scene::contacts
@@ -107,16 +108,18 @@ struct ContactPoint {
   /// Segment-integrated contact: the segments that the multiplier of nodes[0] acts on. At finite strain: its whole
   /// slave facets, whose present segments are Facing::pieces.
   std::vector<Segment> segments;
-  bool area_of_bar = false;    ///< tributary area is the cross-section of the bar; else, without facets, 1
-  bool shares_normal = false;  ///< deformable continua on both sides: the normal is the bisector of the two
-  bool turns_frame = false;    ///< in space, with friction: its normal turns as it slides over an obstacle, and its
-                               ///< tangents with it
+  std::vector<Overlap> overlaps;  ///< the same in space, at small strain
+  bool area_of_bar = false;       ///< tributary area is the cross-section of the bar; else, without facets, 1
+  bool shares_normal = false;     ///< deformable continua on both sides: the normal is the bisector of the two
+  bool turns_frame = false;       ///< in space, with friction: its normal turns as it slides over an obstacle, and its
+                                  ///< tangents with it
   int slave_body = 0;
   double mesh_size = 0;   ///< mean length of the slave facets at the node, or of their edges; 0: none
   double tie_length = 0;  ///< length up to which an initial gap may be rounding of the coordinates
   int multiplier = 0;     ///< offset of its components in the multiplier vector
   int tangents = 0;       ///< 0 (frictionless) or D - 1
   int components() const { return 1 + tangents; }
+  bool is_integrated() const { return master == Master::segments; }
   /// Number of its entries in History::foot, in D dimensions. pre: it has a foot.
   int feet(int D) const {
     if (surface >= 0) return D == 2 ? 1 : 6;

@@ -12,6 +12,7 @@
 #include "core/mesh/sides.hpp"
 #include "core/model/facings_impl.hpp"
 #include "core/model/master_surface.hpp"
+#include "core/model/overlap_pairing.hpp"
 #include "core/model/segment_search.hpp"
 #include "core/model/slave_point.hpp"
 
@@ -323,9 +324,11 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   if (contact.is_of_itself() && !model.scene.finite_strain)
     throw ModelError("segment integration of a side against itself needs finite strain", where);
-  if (model.dimension == 3 || pairing.slave.facets.empty() || !is_continuum(shape))
+  if (pairing.slave.facets.empty() || !is_continuum(shape))
     throw ModelError("segment integration needs a slave side of facets of a solid body", where);
-  pair_segments(model, points, pairing);
+  if (model.dimension == 3 && model.scene.finite_strain)
+    throw ModelError("segment integration in space needs small strain", where);
+  model.dimension == 3 ? pair_overlaps(model, points, pairing) : pair_segments(model, points, pairing);
 }
 
 }  // namespace

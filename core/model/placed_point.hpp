@@ -51,7 +51,7 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
 /// segment-integrated.
 template <class T>
 T whole_area(const ContactPoint& point, const Slots<T>& slots) {
-  if (point.segments.empty()) return tributary_area(point, slots);
+  if (!point.is_integrated()) return tributary_area(point, slots);
   return area_of_facets<T>(
       point.segments, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
 }

@@ -97,7 +97,7 @@ std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Fa
   places.reserve(9);  // of the slave node and two patches
   for_each_place(input.model, point, facing, [&](int place) { places.push_back(place); });
   faced = static_cast<int>(places.size());
-  if (!point.segments.empty() || point.foot < 0) return places;
+  if (point.is_integrated() || point.foot < 0) return places;
   if (facing.patch != no_patch || input.previous.faced[p])
     for_each_place(input.model.surfaces[point.surface], input.previous.patch[p], [&](int place) {
       if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
@@ -107,7 +107,7 @@ std::vector<int> places_of_tangent(const ContactInput<T>& input, int p, const Fa
 
 /// Whether the tangent of a point is by the displacements of all nodes that it touches.
 inline bool has_places(const Model& model, const ContactPoint& point) {
-  return (point.surface >= 0 || !point.segments.empty()) && model.effects.current_geometry;
+  return (point.surface >= 0 || point.is_integrated()) && model.effects.current_geometry;
 }
 
 /// Tangent of an open point: it bears nothing wherever it is, and its rows are -A lambda.

@@ -21,11 +21,11 @@ Vec<T, D> start_of_vertex(const Obstacle& obstacle, const Numbers<T>& numbers, i
   }
 }
 
-/// Initial position of a node, or of a vertex of the polyline that is an obstacle (core/contact/segment.hpp).
-template <class T>
-Vec<T, 2> start_of(const Model& model, int obstacle, const Slots<T>& slots, int node) {
-  if (node < model.node_count) return point2(slots.points, node);
-  return start_of_vertex<2>(model.scene.obstacles[obstacle], slots.numbers, node - model.node_count);
+/// Initial position of a node, or of a vertex of the obstacle, if that has facets (core/contact/segment.hpp).
+template <int D, class T>
+Vec<T, D> start_of(const Model& model, int obstacle, const Slots<T>& slots, int node) {
+  if (node < model.node_count) return slots.points.template block<D, 1>(0, node);
+  return start_of_vertex<D>(model.scene.obstacles[obstacle], slots.numbers, node - model.node_count);
 }
 
 /// Rigid motion of an obstacle: a turn about its centre, then a shift.

@@ -12,7 +12,7 @@ Vector<T> arcs_of(const Model& model, const MasterSurface& curve, const Slots<T>
   Vector<T> arcs(static_cast<Eigen::Index>(curve.facets.size()) + 1);
   arcs[0] = T(0);
   for (std::size_t f = 0; f < curve.facets.size(); ++f) {
-    const auto end = [&](int k) { return start_of(model, curve.obstacle, slots, curve.facets[f][k]); };
+    const auto end = [&](int k) { return start_of<2>(model, curve.obstacle, slots, curve.facets[f][k]); };
     arcs[f + 1] = arcs[f] + norm(Vec<T, 2>(end(1) - end(0)));
   }
   return arcs;
@@ -27,7 +27,9 @@ template <class T>
 double origin_of_arcs(const Model& model, const ContactPoint& point, const Slots<T>& slots) {
   const auto& curve = model.surfaces[point.surface];
   const auto& facet = curve.facets[facet_of_arcs(point)];
-  const auto place = [&](int node) -> Vec<double, 2> { return values(start_of(model, curve.obstacle, slots, node)); };
+  const auto place = [&](int node) -> Vec<double, 2> {
+    return values(start_of<2>(model, curve.obstacle, slots, node));
+  };
   const Vec<double, 2> c = place(facet[0]), tau = place(facet[1]) - c;
   return (place(point.nodes[0]) - c).dot(tau) / tau.norm();
 }
@@ -56,7 +58,7 @@ U arc_beside(const Positions<U, T, Displacement>& positions, const ContactPoint&
   const Slots<T>& slots = positions.slots;
   const MasterSurface& curve = model.surfaces[point.surface];
   const auto& across = curve.patches<2>()[nearest].across;
-  const auto of_start = [&](int node) { return start_of(model, point.obstacle, slots, node); };
+  const auto of_start = [&](int node) { return start_of<2>(model, point.obstacle, slots, node); };
   const auto& facet = curve.facets[nearest];
   const U place = U(arc_to(model, point, slots, nearest, nearest) - T(origin_of_arcs(model, point, slots))) +
                   xi * U(norm(Vec<T, 2>(of_start(facet[1]) - of_start(facet[0]))));

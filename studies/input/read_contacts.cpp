@@ -180,8 +180,8 @@ bool is_surface(const std::string& master, const SceneReading& reading) {
 /// What integration over segments does not go with. `is_solid`: the slave is a side of a solid body.
 void check_segments(const JsonNode& node, const Contact& contact, bool is_solid, bool of_itself,
                     SceneReading& reading) {
-  if (reading.dimension() == 3)
-    node.error(R"(is "segment", which integrates along edges of the plane; allowed in the space solid: "node")");
+  if (reading.dimension() == 3 && reading.scene.finite_strain)
+    node.error(R"(is "segment", which in the space solid needs small strain; allowed at finite strain: "node")");
   if (of_itself && !reading.scene.finite_strain)
     node.error(R"(is "segment", which a side takes against itself at finite strain alone; allowed: "node")");
   if (contact.smoothing != Smoothing::none)

@@ -95,7 +95,7 @@ Advisable advisable(const Model& model) {
     const auto is_of_solid = [&](const ContactPoint& point) {
       return point.contact == static_cast<int>(c) && is_continuum(model.bodies[point.slave_body].mesh.shape);
     };
-    scene.may_be_segments |= facets && !contact.segment && model.dimension == 2 &&
+    scene.may_be_segments |= facets && !contact.segment && (model.dimension == 2 || !model.scene.finite_strain) &&
                              std::any_of(model.points.begin(), model.points.end(), is_of_solid);
   }
   return scene;

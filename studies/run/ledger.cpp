@@ -248,7 +248,10 @@ double point_bytes(const Model& model, const Slots<double>& slots) {
   long bytes = slot_bytes(slots).contact;
   for (const auto& point : model.points) {
     bytes += static_cast<long>(sizeof(ContactPoint)) + bytes_of(point.nodes) + bytes_of(point.places) +
-             bytes_of(point.corners) + bytes_of(point.faces) + bytes_of(point.area_facets) + bytes_of(point.segments);
+             bytes_of(point.corners) + bytes_of(point.faces) + bytes_of(point.area_facets) + bytes_of(point.segments) +
+             bytes_of(point.overlaps);
+    for (const auto& overlap : point.overlaps)
+      bytes += bytes_of(overlap.vertices) + bytes_of(overlap.slave.side) + bytes_of(overlap.master.side);
     for (const auto& edge : point.area_edges) bytes += bytes_of(edge);
   }
   return static_cast<double>(bytes);

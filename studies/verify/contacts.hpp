@@ -9,6 +9,7 @@
 
 #include "studies/verify/faces.hpp"
 #include "studies/verify/masters.hpp"
+#include "studies/verify/overlaps.hpp"
 #include "studies/verify/solids.hpp"
 
 namespace stickslip::verify {
@@ -37,7 +38,10 @@ class Contact {
         master_(scene, given, sides.at("slave"), sides.at("master"), segment),
         facets_(body_.in_space() ? Facets{} : facets_of(side_)),
         areas_(areas_of(scene, body_, body_.element == "H27" ? scene.side(sides.at("slave")) : side_)) {
-    if (const auto rigid = scene.faces.find(sides.at("master")); rigid != scene.faces.end())
+    const auto rigid = scene.faces.find(sides.at("master"));
+    if (body_.in_space() && segment) {
+      integrate(scene.side(sides.at("slave")), sides.at("master"), rigid);
+    } else if (rigid != scene.faces.end())
       faces_.emplace(rigid->second.vertices, rigid->second.faces, master_.smooth, master_.corner, true);
     else if (body_.in_space() && !master_.rigid())
       faces_.emplace(scene.points, cut_at_middles(scene.side(sides.at("master"))).edges, master_.smooth, master_.corner,
@@ -56,6 +60,7 @@ class Contact {
       if (itself) master_.set_wall(seeker(node, scene.points));
     std::erase_if(areas_, [&](const auto& of) {
       const int node = of.first;  // (no area is left on the axis)
+      if (body_.in_space() && segment) return false;
       if (!segment) return body_.quadratic() && scene.axisymmetric && scene.points(0, node) == 0;
       return of.second == 0 || std::ranges::none_of(facets_, [&](const Facet& facet) { return carries(node, facet); });
     });
@@ -73,7 +78,9 @@ class Contact {
       Touch& touch = touches[node];
       Seeker point = seeker(node, x);
       point.comes_on = last.contains(node) && !last.at(node).faces;
-      touch = segment ? on_pieces(node, x) : Touch{faces_ ? faces_->foot(point) : master_.foot(point), node, area};
+      touch = segment && body_.in_space() ? over_samples(node)
+              : segment                   ? on_pieces(node, x)
+                                          : Touch{faces_ ? faces_->foot(point) : master_.foot(point), node, area};
       if (faces_ && master_.rigid()) touch.weights.clear();
       if (!segment) touch.slave.emplace_back(touch.weights.emplace_back(node, 1));
       move(touch, last[node], u, time);
@@ -261,6 +268,57 @@ class Contact {
     return touch;
   }
 
+  /// Finds the places of Gauss of a contact in space.
+  template <class Rigid>
+  void integrate(const Side& slave, const std::string& master, const Rigid& rigid) {
+    slave_parts_ = parts_of(slave);
+    if (rigid != scene_.faces.end()) {
+      master_parts_ = parts_of({{}, rigid->second.faces});
+      samples_ = Overlaps(scene_.points, rigid->second.vertices, slave_parts_, master_parts_).samples;
+    } else if (master_.rigid()) {
+      samples_ = Overlaps(scene_.points, slave_parts_, [this](const Vec3& x) { return master_.foot({-1, x}); }).samples;
+    } else {
+      master_parts_ = parts_of(scene_.side(master));
+      samples_ = Overlaps(scene_.points, scene_.points, slave_parts_, master_parts_).samples;
+    }
+  }
+
+  /// psi of a node at a place of a face: its shape function there, and an equal share of those of nodes that carry no
+  /// multiplier.
+  double psi(int node, const Sample& at) const {
+    const Nodes& corners = at.slave->corners;
+    const Shape N = shape(corners.size() == 3 ? "T3" : "Q4", {at.at[0], at.at[1], 0});
+    double psi = 0;
+    const auto carrying = std::ranges::count_if(corners, [&](int corner) { return side_.has(corner); });
+    for (int k = 0; k < std::ssize(corners); ++k)
+      psi += corners[k] == node ? N.value[k] : side_.has(corners[k]) ? 0 : N.value[k] / static_cast<double>(carrying);
+    return psi;
+  }
+
+  Touch over_samples(int node) const {
+    Touch touch{{true}, node};
+    touch.normal.setZero();
+    for (const auto& at : samples_) {
+      if (std::ranges::count(at.slave->corners, node) == 0) continue;
+      const double dA = psi(node, at) * at.area;
+      touch.area += dA;
+      touch.relative += dA * (at.x.y - at.y.y);
+      touch.normal += dA * (master_.rigid() ? at.normal : at.normal - at.x.across.normalized());
+      touch.y += dA * at.y.y;
+      for (const auto& [n, weight] : at.x.weights) touch.slave.emplace_back(n, dA * weight);
+      if (master_.rigid()) continue;
+      for (const auto& [n, weight] : at.y.weights) touch.weights.emplace_back(n, -dA * weight);
+    }
+    if (touch.area <= 1e-12 * areas_.at(node)) return {Foot{}, node};
+    touch.normal.normalize();
+    touch.gap = touch.relative.dot(touch.normal) / touch.area;
+    touch.y /= touch.area;
+    touch.weights.insert(touch.weights.end(), touch.slave.begin(), touch.slave.end());
+    for (auto* of : {&touch.weights, &touch.slave})
+      for (auto& [n, weight] : *of) weight /= touch.area;
+    return touch;
+  }
+
   /// What a place did since the last increment. Its gap and normal are those in the frame of the master, at small
   /// strain those of the start.
   void move(Touch& touch, const Touch& last, const Field& u, double time) const {
@@ -305,6 +363,8 @@ class Contact {
   Master master_;
   std::optional<Faces> faces_;  ///< of a master in space that deforms, or an obstacle that has facets
   Facets facets_;
+  std::vector<PartFace> slave_parts_, master_parts_;
+  std::vector<Sample> samples_;  ///< of a contact in space that is integrated
   std::map<int, double> areas_;
   std::set<int> corners_;  ///< where the slave side turns by more than 60 degrees
   double last_time_ = at_rest;

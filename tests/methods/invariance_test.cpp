@@ -46,7 +46,9 @@ Scene scaled_boxes(double length, double stress, bool segment) {
 }
 
 TEST(Invariance, UnitsChangeNeitherThePathNorTheAnswer) {
-  for (const auto& [method, segment] : methods_and_discretisations()) {
+  for (auto [method, segment] : methods_and_discretisations()) {
+    // (a hundred times the tolerance: nearer to it rounding decides the last iteration, and differs between processors)
+    std::visit([](auto& options) { options.newton.tolerance *= 100; }, method);
     const auto reference = run(scaled_boxes(1, 1, segment), method);
     for (const auto& [length, stress] : {std::pair{1e3, 1e-6}, {1e6, 1e-12}, {1e-6, 1.0}, {39.37, 1.45e-4}}) {
       const auto s = run(scaled_boxes(length, stress, segment), method);

@@ -110,6 +110,13 @@ Scene drawn_die(Smoothing smoothing) {
 
 const J2Plastic metal{1000.0, 0.3, 12.0, 50.0};
 
+/// The same scene, integrated over segments: in space over overlaps. (Not on a circle: a gap to it is no polynomial,
+/// and the points of Gauss are others in space.)
+Scene segmented(Scene scene) {
+  for (auto& contact : scene.contacts) contact.segment = true;
+  return scene;
+}
+
 std::vector<Scene> plane_scenes() {
   const LinearElastic elastic{1000.0, 0.3};
   const NeoHookean rubber{1000.0, 0.3, NeoHookean::Volumetric::log};
@@ -132,7 +139,11 @@ std::vector<Scene> plane_scenes() {
                          scenes::two_boxes(5, 8),
                          scenes::two_disks(6, false),
                          drawn_die(Smoothing::catmull_rom),
-                         drawn_die(Smoothing::b_spline)};
+                         drawn_die(Smoothing::b_spline),
+                         segmented(drawn_block(elastic, false)),
+                         segmented(over_a_ridge(Smoothing::none, false)),
+                         segmented(scenes::two_boxes(5, 8)),
+                         scenes::two_disks(6, true)};
   for (auto& scene : all) {  // what the plane alone can be asked
     std::erase_if(scene.responses, [](const Response& response) {
       return response.component == Response::Component::moment || response.kind == Kind::contact_half_width;

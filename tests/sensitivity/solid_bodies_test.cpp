@@ -293,13 +293,23 @@ Scene few_steps(Scene s) {
   return s;
 }
 
+/// The same scene, integrated over overlaps.
+Scene segmented(Scene scene) {
+  scene.contacts[0].segment = true;
+  return scene;
+}
+
 TEST(SolidBodies, HaveTheDerivativesOfTheOracleInBothModes) {
   const NeoHookean rubber{1000.0, 0.3};
+  const auto two_steps = [](Scene s) {
+    s.legs = {{1, 1}, {2, 1}};
+    return s;
+  };
   for (const Method& method : scenes::finite_schemes()) {
-    scenes::expect_derivatives_in_both_modes(twisted_block(LinearElastic{1000.0, 0.3}, false), method);
-    scenes::expect_derivatives_in_both_modes(twisted_block(LinearElastic{1000.0, 0.3}, false, "T4"), method);
-    scenes::expect_derivatives_in_both_modes(twisted_block(rubber, true), method);
-    scenes::expect_derivatives_in_both_modes(block_on_block("H8"), method);
+    scenes::expect_derivatives_in_both_modes(two_steps(twisted_block(LinearElastic{1000.0, 0.3}, false)), method);
+    scenes::expect_derivatives_in_both_modes(two_steps(twisted_block(LinearElastic{1000.0, 0.3}, false, "T4")), method);
+    scenes::expect_derivatives_in_both_modes(two_steps(twisted_block(rubber, true)), method);
+    scenes::expect_derivatives_in_both_modes(two_steps(block_on_block("H8")), method);
     scenes::expect_derivatives_in_both_modes(block_in_a_bowl(rubber, true), method);
   }
   const MonolithicAL monolithic;
@@ -315,6 +325,30 @@ Scene few_cells(Scene s) {
   for (auto& body : s.bodies)
     for (int& along : std::get<BoxMesh>(body.mesh).cells) along = along > 2 ? 2 : along;
   return few_steps(std::move(s));
+}
+
+/// Faces of all kinds against one another, against a plane and rigid triangles: shapes move what overlaps what.
+TEST(SolidBodies, IntegratedOverOverlapsHaveTheDerivativesOfTheOracleInBothModes) {
+  for (const Method& method : scenes::finite_schemes())
+    scenes::expect_derivatives_in_both_modes(few_cells(segmented(block_on_block("H8"))), method);
+  const MonolithicAL monolithic;
+  scenes::expect_derivatives_in_both_modes(few_cells(segmented(block_on_block("T4"))), monolithic);
+  Scene triangles = few_cells(segmented(over_triangles(Smoothing::none)));
+  triangles.finite_strain = false;
+  triangles.bodies[0].material = LinearElastic{1000.0, 0.3};
+  scenes::expect_derivatives_in_both_modes(triangles, monolithic);
+  for (const char* element : {"T10", "H20", "H27"}) {
+    Scene block = few_cells(segmented(twisted_block(LinearElastic{1000.0, 0.3}, false, element)));
+    std::erase_if(block.parameters, [](const Parameter& p) { return p.name != "depth" && p.name != "mu"; });
+    scenes::expect_derivatives_in_both_modes(block, monolithic);
+  }
+  // the sides of quadratic elements on one another, of few cells and parameters, because there are many nodes
+  Scene blocks = few_cells(segmented(block_on_block("T10")));
+  for (auto& body : blocks.bodies) std::get<BoxMesh>(body.mesh).cells = {2, 1, 1};
+  std::get<BoxMesh>(blocks.bodies[0].mesh).cells = {1, 1, 1};
+  blocks.parameters.clear();
+  scenes::shape(blocks, "side", {1, "lower.right", "lower.left", {1.0, 0.3, -0.2}, -1, 0});
+  scenes::expect_derivatives_in_both_modes(blocks, monolithic);
 }
 
 TEST(SolidBodies, OfQuadraticElementsHaveTheDerivativesOfTheOracleInBothModes) {

@@ -290,6 +290,29 @@ TEST(Verify, HoldsForSolidBodiesInSpace) {
   for (const char* element : {"T10", "H20", "H27"}) expect_holds(solve(solid("finite", element, rubber(), ball, true)));
 }
 
+/// Integrated over what faces overlap: the curved barrel and the block of all elements, obstacles, and a slave side of
+/// which some nodes carry nothing.
+TEST(Verify, HoldsForSegmentsInSpace) {
+  for (const char* element : {"H8", "H20"}) {
+    SCOPED_TRACE(element);
+    json scene = on_barrel(element, "faceted");
+    scene["strain"] = "small";
+    scene["time"]["steps"] = 2;
+    scene["contacts"]["c"]["discretization"] = "segment";
+    for (const char* body : {"barrel", "block"}) scene["bodies"][body]["material"] = linear();
+    EXPECT_THAT(broken(certificate(solve(scene))), testing::IsEmpty());  // (a moment is left, as on any facets)
+    scene["contacts"]["c"]["slave"] = "block.bottom - block.front";
+    EXPECT_THAT(broken(certificate(solve(scene, "penalty"))), testing::IsEmpty());
+  }
+  for (const auto& [obstacle, element] :
+       {std::pair{floor_in_space, "H27"}, {floor_in_space, "T10"}, {ball, "T4"}, {drum, "T10"}, {bore, "H8"}}) {
+    SCOPED_TRACE(std::string(element) + obstacle);
+    json scene = solid("small", element, linear(), obstacle, obstacle != floor_in_space);
+    scene["contacts"]["sole"]["discretization"] = "segment";
+    expect_holds(solve(scene));
+  }
+}
+
 /// A body whose whole boundary is a slave has the normal of its sole at the corners of the sole. A master ends where
 /// its sole does: what is beside it faces nothing.
 TEST(Verify, HoldsAtTheCornersOfASlaveSide) {
