@@ -2,13 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <map>
 #include <string_view>
+
+#include "core/mesh/decimal.hpp"
 
 namespace stickslip {
 namespace {
@@ -178,9 +179,9 @@ class AsciiReader {
     for (int i = 0; i < 3; ++i) {
       auto word = words_.next();
       if (word.starts_with('+')) word.remove_prefix(1);
-      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x[i]);
-      if (error != std::errc() || end != word.data() + word.size())
-        return at("a number should stand here; found " + shown(word));
+      const auto number = decimal(word);
+      if (!number) return at("a number should stand here; found " + shown(word));
+      x[i] = *number;
       if (finite && !std::isfinite(x[i])) return at("the number " + shown(word) + " is not finite");
     }
     return "";

@@ -36,7 +36,7 @@ Keys keys_of(const Schema& object) { return keys_of(object, object.value("requir
 Keys keys_of(const Schema& object, const std::vector<std::string>& required) {
   Keys keys{required};
   for (const auto& [key, unused] : object.at("properties").items())
-    if (std::ranges::count(required, key) == 0) keys.optional.push_back(key);
+    if (std::count(required.begin(), required.end(), key) == 0) keys.optional.push_back(key);
   return keys;
 }
 
