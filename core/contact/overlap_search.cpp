@@ -100,41 +100,53 @@ class PolygonView {
   double on_edge_;  ///< length
 };
 
-/// A part of the slave facet with the master facet that it faces, and their distance.
+/// A part of the slave facet with a master facet that is before or behind it, and its depth behind that facet, length;
+/// negative: the facet is before it.
 struct FacingPart {
   int master;
-  double distance;
+  double depth;
   Polygon polygon;
 };
 
-/// What of `polygon` the other one does not cover, as convex polygons.
-std::vector<Polygon> uncovered(const PolygonView& view, Polygon polygon, const Polygon& by) {
-  if (view.are_apart(polygon, by)) return {std::move(polygon)};
+/// What of convex polygons another one does not cover, as convex polygons.
+std::vector<Polygon> uncovered(const PolygonView& view, std::vector<Polygon> polygons, const Polygon& by) {
   std::vector<Polygon> beside;
-  for (const auto& from : by) {
-    auto [inside, outside] = view.cut(polygon, from.edge);
-    if (outside.size() > 2) beside.push_back(std::move(outside));
-    polygon = std::move(inside);
+  for (auto& polygon : polygons) {
+    if (view.are_apart(polygon, by)) {
+      beside.push_back(std::move(polygon));
+      continue;
+    }
+    for (const auto& from : by) {
+      auto [inside, outside] = view.cut(polygon, from.edge);
+      if (outside.size() > 2) beside.push_back(std::move(outside));
+      polygon = std::move(inside);
+    }
   }
   return beside;
 }
 
-/// Leaves of each part what no nearer one covers. Parts of no more than `least_area` go.
-std::vector<FacingPart> nearest_of(const PolygonView& view, std::vector<FacingPart> parts, double least_area) {
-  std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.distance < b.distance; });
-  std::vector<FacingPart> nearest;
+/// Leaves of each part what no nearer one covers, and of a part that is inside of the solid what is not outside again,
+/// beyond another face of it: of `alike`, which look the way of the slave facet. There it penetrates no face on the far
+/// side. Pieces of no more than `least_area` go.
+std::vector<FacingPart> nearest_of(const PolygonView& view, std::vector<FacingPart> parts,
+                                   const std::vector<FacingPart>& alike, double least_area) {
+  const auto is_nearer = [](const auto& a, const auto& b) { return std::abs(a.depth) < std::abs(b.depth); };
+  std::stable_sort(parts.begin(), parts.end(), is_nearer);
+  std::vector<FacingPart> nearest, kept;
   for (auto& part : parts) {
     std::vector<Polygon> left{std::move(part.polygon)};
-    for (const auto& nearer : nearest) {
-      std::vector<Polygon> beside;
-      for (auto& polygon : left)
-        for (auto& piece : uncovered(view, std::move(polygon), nearer.polygon)) beside.push_back(std::move(piece));
-      left = std::move(beside);
-    }
+    for (const auto& nearer : nearest) left = uncovered(view, std::move(left), nearer.polygon);
     for (auto& polygon : left)
-      if (view.area(polygon) > least_area) nearest.push_back({part.master, part.distance, std::move(polygon)});
+      if (view.area(polygon) > least_area) nearest.push_back({part.master, part.depth, std::move(polygon)});
   }
-  return nearest;
+  for (auto& part : nearest) {
+    std::vector<Polygon> left{std::move(part.polygon)};
+    for (const auto& face : alike)
+      if (face.depth > 0 && face.depth < part.depth) left = uncovered(view, std::move(left), face.polygon);
+    for (auto& polygon : left)
+      if (view.area(polygon) > least_area) kept.push_back({part.master, part.depth, std::move(polygon)});
+  }
+  return kept;
 }
 
 }  // namespace
@@ -191,22 +203,24 @@ std::vector<Overlap> OverlapSearch::facing(const SideFacet& slave) const {
     longest = std::max(longest, (place(slave.nodes[(k + 1) % slave.corners]) - place(slave.nodes[k])).norm());
   const PolygonView view(points_, normal, mesh_file_rounding * area / longest);
   const Polygon own = view.polygon(slave, false);
-  std::vector<FacingPart> parts;
+  std::vector<FacingPart> opposite, alike;
   for (int f : near(slave, normal)) {
     const Vec<double, 3> outward = across(master_[f]);
-    if (!opposes<3>(outward, whole)) continue;
-    const Polygon other = view.polygon(master_[f], true);
+    const bool is_opposite = opposes<3>(outward, whole);
+    if (!is_opposite && normal.dot(outward) <= at_face_edge * outward.norm()) continue;
+    if (master_[f] == slave) continue;
+    const Polygon other = view.polygon(master_[f], is_opposite);
     if (view.are_apart(own, other)) continue;
     Polygon part = own;
     for (const auto& from : other) part = view.cut(part, from.edge).first;
     if (view.area(part) <= least_share * area) continue;
     Vec<double, 3> middle = Vec<double, 3>::Zero();
     for (const auto& vertex : part) middle += vertex.at / static_cast<double>(part.size());
-    const double distance = (middle - place(master_[f].nodes[0])).dot(outward) / normal.dot(outward);
-    parts.push_back({f, std::abs(distance), std::move(part)});
+    const double depth = (middle - place(master_[f].nodes[0])).dot(outward) / normal.dot(outward);
+    (is_opposite ? opposite : alike).push_back({f, depth, std::move(part)});
   }
   std::vector<Overlap> overlaps;
-  for (const auto& part : nearest_of(view, std::move(parts), least_share * area)) {
+  for (const auto& part : nearest_of(view, std::move(opposite), alike, least_share * area)) {
     Overlap overlap{slave, master_[part.master]};
     for (const auto& vertex : part.polygon) overlap.vertices.push_back(vertex.of);
     overlaps.push_back(std::move(overlap));

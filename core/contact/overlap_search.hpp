@@ -20,8 +20,8 @@ class OverlapSearch {
   OverlapSearch(Points<double> points, std::vector<SideFacet> master);
 
   /// The overlaps of a slave facet with the master facets that oppose it, seen along the normal of the slave facet.
-  /// Where it faces several, one behind the other, the nearest counts. Parts that face nothing are in no overlap. The
-  /// caller sets `psi`.
+  /// Where it faces several, one behind the other, the nearest counts. Beyond another face of the master's solid
+  /// nothing is inside of it. Parts that face nothing are in no overlap. The caller sets `psi`.
   ///
   /// A vertex within 1e-6 of the facet's width of an edge is on it: the rounding of coordinates in files. So sides that
   /// end together have no slivers, and a parameter that moves them apart meets no kink there.

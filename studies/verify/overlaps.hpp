@@ -112,7 +112,7 @@ class Overlaps {
 
  private:
   struct Piece {
-    double distance;
+    double depth;  ///< behind the master
     const PartFace* master;
     Polygon polygon;
   };
@@ -158,49 +158,60 @@ class Overlaps {
     return at;
   }
 
+  /// Polygons without what another one covers.
+  template <class IsNothing>
+  static std::vector<Polygon> without(const std::vector<Polygon>& polygons, const Polygon& cover,
+                                      const IsNothing& is_nothing) {
+    std::vector<Polygon> beside;
+    const auto from = [&](std::size_t k) -> const Vec2& { return cover[k % cover.size()]; };
+    for (Polygon rest : polygons) {
+      Polygon common = rest;
+      for (std::size_t k = 0; k < cover.size(); ++k) common = left_of(common, from(k), from(k + 1));
+      if (is_nothing(common)) {
+        beside.push_back(rest);
+        continue;
+      }
+      for (std::size_t k = 0; k < cover.size(); ++k) {
+        beside.push_back(left_of(rest, from(k + 1), from(k)));
+        rest = left_of(rest, from(k), from(k + 1));
+      }
+    }
+    std::erase_if(beside, is_nothing);
+    return beside;
+  }
+
   void look_from(const Field& X, const Field& Y, const PartFace& from, const std::vector<PartFace>& master) {
     const View view(X, from.corners);
     const Vec3 outward = area_vector(X, from.corners);
     const Polygon own = view.seen(X, from.corners);
     const auto is_nothing = [&](const Polygon& p) { return p.size() < 3 || area_of(p) <= 1e-12 * outward.norm(); };
-    std::vector<Piece> pieces;
+    std::vector<Piece> pieces, alike;  // alike: that look its way
     for (const auto& face : master) {
       const Vec3 out = area_vector(Y, face.corners);
-      if (!opposes(out, outward)) continue;
+      const bool is_opposite = opposes(out, outward);
+      if (!is_opposite && out.dot(view.normal) <= at_end * out.norm()) continue;
       Polygon other = view.seen(Y, face.corners), part = own;
-      for (std::size_t k = 0; k < other.size(); ++k)
-        part = left_of(part, other[(k + 1) % other.size()], other[k]);  // it goes round the other way
+      if (is_opposite) std::ranges::reverse(other);  // it goes round the other way
+      for (std::size_t k = 0; k < other.size(); ++k) part = left_of(part, other[k], other[(k + 1) % other.size()]);
       if (is_nothing(part)) continue;
       const Vec2 mean = mean_of(part);
       const Vec3 place = view.origin + mean[0] * view.along + mean[1] * view.across;
-      pieces.push_back({std::abs((place - Y.col(face.corners[0])).dot(out) / view.normal.dot(out)), &face, part});
+      const double depth = (place - Y.col(face.corners[0])).dot(out) / view.normal.dot(out);
+      (is_opposite ? pieces : alike).push_back({depth, &face, part});
     }
-    std::ranges::stable_sort(pieces, {}, &Piece::distance);
+    std::ranges::stable_sort(pieces, {}, [](const Piece& piece) { return std::abs(piece.depth); });
     std::vector<Piece> kept;
     for (const auto& piece : pieces) {
       std::vector<Polygon> left{piece.polygon};
-      for (const auto& nearer : kept) {
-        std::vector<Polygon> beside;
-        for (Polygon rest : left) {
-          Polygon common = rest;
-          for (std::size_t k = 0; k < nearer.polygon.size(); ++k)
-            common = left_of(common, nearer.polygon[k], nearer.polygon[(k + 1) % nearer.polygon.size()]);
-          if (is_nothing(common)) {
-            beside.push_back(rest);
-            continue;
-          }
-          for (std::size_t k = 0; k < nearer.polygon.size(); ++k) {
-            const Vec2 &a = nearer.polygon[k], &b = nearer.polygon[(k + 1) % nearer.polygon.size()];
-            beside.push_back(left_of(rest, b, a));
-            rest = left_of(rest, a, b);
-          }
-        }
-        left = beside;
-        std::erase_if(left, is_nothing);
-      }
-      for (const auto& polygon : left) kept.push_back({piece.distance, piece.master, polygon});
+      for (const auto& nearer : kept) left = without(left, nearer.polygon, is_nothing);
+      for (const auto& polygon : left) kept.push_back({piece.depth, piece.master, polygon});
     }
-    for (const auto& piece : kept) sample(X, Y, from, view, piece);
+    for (const auto& piece : kept) {  // beyond another face of the solid it is inside of none
+      std::vector<Polygon> left{piece.polygon};
+      for (const auto& face : alike)
+        if (face.depth > 0 && face.depth < piece.depth) left = without(left, face.polygon, is_nothing);
+      for (const auto& polygon : left) sample(X, Y, from, view, {piece.depth, piece.master, polygon});
+    }
   }
 
   /// Triangles from the mean of the corners, each with points of Gauss that collapse to it: four each way, two if both

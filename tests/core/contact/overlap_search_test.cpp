@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <random>
 
 #include "core/contact/overlaps.hpp"
@@ -119,6 +120,19 @@ TEST(Overlaps, AreWithTheNearestOfWhatLiesBehindOneAnother) {
   }
 }
 
+/// A lid over a plate with two faces: seen from above the plate, what is below it is inside of nothing.
+TEST(Overlaps, AreNoneWithTheFarSideOfASolid) {
+  for (const double height : {1.2, 0.5}) {  // of a facet that looks up, above and inside of the plate
+    Grids grids;
+    const auto slave = grids.add({0, 1, 0, 1}, 2, 2, false, true, [&](double, double) { return height; });
+    auto master = grids.add({-1, 0.6, -1, 2}, 3, 4, false, true, [](double, double) { return 1.0; });
+    const auto below = grids.add({-1, 2, -1, 2}, 2, 5, true, false, flat);
+    master.insert(master.end(), below.begin(), below.end());
+    // above the plate nothing is inside where the plate has its top, for x < 0.6
+    EXPECT_NEAR(area_of(OverlapSearch(grids.points, master), slave, grids.points), height > 1 ? 0.4 : 1.0, 1e-14);
+  }
+}
+
 TEST(Overlaps, AreNoneWithWhatLooksTheSameWay) {
   Grids grids;
   const auto slave = grids.add({0, 1, 0, 1}, 2, 2, false, false, flat);
@@ -174,6 +188,39 @@ TEST(Overlaps, HaveTheSameSharesWhereverTheyAre) {
   ASSERT_EQ(moved.size(), here.size());
   for (std::size_t k = 0; k < here.size(); ++k)
     EXPECT_NEAR(moved[k], here[k], 1e-11);  // coordinates of 3e6 round by 4e-10, of facets of 300
+}
+
+/// Facets that are tilted to one another, so that integrands jump from one to the next: as nodes move, crossings do,
+/// and the integrals with them.
+TEST(Overlaps, MoveWithTheNodes) {
+  using Complex = std::complex<double>;
+  Grids grids;
+  const auto slave = grids.add({0.1, 1.2, 0.3, 0.9}, 2, 2, false, false, flat, 0.2);
+  const auto master = grids.add(
+      {-0.4, 1.7, -0.2, 1.1}, 4, 3, true, true, [](double x, double y) { return 0.3 * x * y; }, 0.2);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Points<double> way = Points<double>::NullaryExpr(3, grids.points.cols(), [&] { return uniform(random); });
+  constexpr double h = 1e-30, step = 1e-6;
+  for (const auto& facet : slave) {
+    auto overlaps = OverlapSearch(grids.points, master).facing(facet);
+    for (auto& overlap : overlaps) overlap.psi = {1, 0, 0, 0};
+    int slave_nodes = 0;
+    const auto nodes = nodes_of_overlaps(facet.nodes[0], overlaps, static_cast<int>(grids.points.cols()), slave_nodes);
+    const auto integrals = [&]<class T>(const T& by) {
+      const auto place = [&](int node) -> Vec<T, 3> {
+        return grids.points.col(node).cast<T>() + by * way.col(node).cast<T>();
+      };
+      const auto sums = integrate_overlaps<T>(overlaps, nodes, place, [](const auto&) { return PointGeometry<T>{}; });
+      Vector<T> all(7 + sums.weights.size());
+      all << sums.area, sums.gap, sums.normal, sums.weights;
+      return all;
+    };
+    const Eigen::VectorXd exact = integrals(Complex(0, h)).imag() / h;
+    const Eigen::VectorXd difference = (integrals(step) - integrals(-step)) / (2 * step);
+    EXPECT_LE((exact - difference).cwiseAbs().maxCoeff(),
+              1e-8 * exact.cwiseAbs().maxCoeff());  // rounding / step, step^2
+  }
 }
 
 /// Shape functions of quadratic sides: 1 at their nodes, of sum 1, with slopes that are those of their values.
