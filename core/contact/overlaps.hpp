@@ -183,10 +183,6 @@ std::vector<Vec<T, 3>> vertices_of_overlap(const Overlap& overlap, const Vec<T, 
   return vertices;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// Calls f(p, dA) at the points of an overlap: p in the plane across n, dA its share of the area there. `place(node)`:
 /// its position.
 template <class T, class Place, class F>

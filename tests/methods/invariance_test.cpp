@@ -46,15 +46,18 @@ Scene scaled_boxes(double length, double stress, bool segment) {
 }
 
 TEST(Invariance, UnitsChangeNeitherThePathNorTheAnswer) {
-  for (auto [method, segment] : methods_and_discretisations()) {
-    // (a hundred times the tolerance: nearer to it rounding decides the last iteration, and differs between processors)
-    std::visit([](auto& options) { options.newton.tolerance *= 100; }, method);
+  for (const auto& [method, segment] : methods_and_discretisations()) {
     const auto reference = run(scaled_boxes(1, 1, segment), method);
+    // (counts to a hundred times the tolerance: nearer to it rounding decides the last one, and differs by processor)
+    Method coarse = method;
+    std::visit([](auto& options) { options.newton.tolerance *= 100; }, coarse);
+    const auto counted = run(scaled_boxes(1, 1, segment), coarse);
     for (const auto& [length, stress] : {std::pair{1e3, 1e-6}, {1e6, 1e-12}, {1e-6, 1.0}, {39.37, 1.45e-4}}) {
       const auto s = run(scaled_boxes(length, stress, segment), method);
-      ASSERT_EQ(s.trajectory.increments.size(), reference.trajectory.increments.size());
-      for (std::size_t n = 0; n < s.trajectory.increments.size(); ++n) {
-        const auto &a = s.trajectory.increments[n], &b = reference.trajectory.increments[n];
+      const auto count = run(scaled_boxes(length, stress, segment), coarse);
+      ASSERT_EQ(count.trajectory.increments.size(), counted.trajectory.increments.size());
+      for (std::size_t n = 0; n < count.trajectory.increments.size(); ++n) {
+        const auto &a = count.trajectory.increments[n], &b = counted.trajectory.increments[n];
         EXPECT_EQ(a.newton, b.newton) << name_of(method) << " " << length;
         EXPECT_EQ(a.augmentations, b.augmentations) << name_of(method) << " " << length;
         EXPECT_EQ(a.state.contact.state, b.state.contact.state);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "tests/support/solved.hpp"
+#include "tests/support/contact_traction.hpp"
 
 namespace stickslip::patch_in_space_test {
 namespace {
@@ -51,15 +51,8 @@ Scene stacked(const Pair& pair, std::optional<double> mu, double nu = 0.3) {
 /// Largest relative error of the contact tractions against the pressure.
 double traction_error(const Solved& s) {
   double worst = 0;
-  const auto& contact = s.trajectory.increments.back().state.contact;
-  for (std::size_t p = 0; p < s.model.points.size(); ++p) {
-    const auto& g = s.slots.geometry[p];
-    const int k = s.model.points[p].multiplier;
-    Eigen::Vector3d t = contact.traction[k] * Eigen::Vector3d(g.normal);
-    for (int a = 0; a < s.model.points[p].tangents; ++a)
-      t += contact.traction[k + 1 + a] * Eigen::Vector3d(g.tangents.col(a));
-    worst = larger(worst, (t - Eigen::Vector3d(0, 0, -pressure)).norm() / pressure);
-  }
+  for (std::size_t p = 0; p < s.model.points.size(); ++p)
+    worst = larger(worst, (contact_traction(s, p) - Eigen::Vector3d(0, 0, -pressure)).norm() / pressure);
   return worst;
 }
 

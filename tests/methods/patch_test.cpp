@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "tests/support/solved.hpp"
+#include "tests/support/contact_traction.hpp"
 
 namespace stickslip::patch_test {
 namespace {
@@ -53,15 +53,10 @@ Scene stacked(int slave, int master, bool skewed, double nu, std::optional<doubl
 /// Largest relative error of the contact tractions against -10 e_y.
 double traction_error(const Solved& s) {
   double worst = 0;
-  const auto& contact = s.trajectory.increments.back().state.contact;
   for (std::size_t p = 0; p < s.model.points.size(); ++p) {
-    const auto& g = s.slots.geometry[p];
-    const int k = s.model.points[p].multiplier;
-    Eigen::Vector2d t = contact.traction[k] * Eigen::Vector2d(g.normal);
-    if (s.model.points[p].tangents) t += contact.traction[k + 1] * Eigen::Vector2d(g.tangents.col(0));
     // the force on the slave is -t A, A along the interface: a vertical pressure p per horizontal length on it
-    const double slope = std::abs(g.normal[1]);
-    worst = larger(worst, (t - Eigen::Vector2d(0, -10 * slope)).norm() / 10);
+    const double slope = std::abs(s.slots.geometry[p].normal[1]);
+    worst = larger(worst, (contact_traction(s, p) - Eigen::Vector2d(0, -10 * slope)).norm() / 10);
   }
   return worst;
 }
