@@ -32,6 +32,9 @@ struct FacePlace {
   int number = 0;
   Vec<double, 2> at = Vec<double, 2>::Zero();  ///< (s, t)
 
+  bool has(int node) const {
+    return std::find(nodes.begin(), nodes.begin() + corners, node) != nodes.begin() + corners;
+  }
   /// Whether both are the same part of the same face, at whatever place of it.
   bool is_part_of(const FacePlace& other) const {
     return nodes == other.nodes && corners == other.corners && part == other.part && number == other.number;

@@ -1,5 +1,6 @@
 #include "core/contact/face_search.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -63,6 +64,8 @@ FaceSearch::FaceSearch(Points<double> points, std::vector<FacePlace> faces, std:
     const auto corner = corners(faces_[f]);
     Bounds<3> bounds{corner[0], corner[0]};
     for (int k = 1; k < faces_[f].corners; ++k) bounds.take_in({corner[k], corner[k]});
+    const Vec<double, 3> normal = across(f).normalized();
+    if (normal.squaredNorm() > 0) bounds.normal_low = bounds.normal_high = normal;  // (a face without area has any)
     return bounds;
   });
 }
@@ -71,16 +74,26 @@ std::array<Vec<double, 3>, 4> FaceSearch::corners(const FacePlace& face) const {
   return corners_of<double>(face, [this](int node) -> Vec<double, 3> { return points_.col(node); });
 }
 
+double FaceSearch::size() const {
+  return boxes_.empty() ? std::numeric_limits<double>::infinity() : (boxes_.whole().high - boxes_.whole().low).norm();
+}
+
 Vec<double, 3> FaceSearch::across(int face) const {
   const auto corner = corners(faces_[face]);
   return area_vector<double>(faces_[face].corners, [&](int k) { return corner[k]; });
 }
 
-std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x,
-                                                  const std::function<bool(int)>& counts) const {
+std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x, const std::function<bool(int)>& counts,
+                                                  const Opposing& opposing) const {
+  constexpr double rounding = 1e-12;
+  const Eigen::Array3d outward = opposing.outward.array();
+  const double most = (rounding - opposing.least) * opposing.outward.norm();
   std::vector<Near> near;  // as near as the nearest so far, and ties
   double least = std::numeric_limits<double>::infinity();
-  const auto skips = [&](const Bounds<3>& box) { return box.distance(x) > least + band_; };
+  const auto skips = [&](const Bounds<3>& box) {
+    if (box.distance(x) > least + band_) return true;
+    return (outward * box.normal_low.array()).min(outward * box.normal_high.array()).sum() > most;
+  };
   boxes_.visit(x, skips, [&](int f) {
     if (!counts(f)) return;
     near.push_back({nearest_of_face(faces_[f], corners(faces_[f]), x), f});
@@ -91,6 +104,38 @@ std::vector<FaceSearch::Near> FaceSearch::nearest(const Vec<double, 3>& x,
   const NearestPlace best = *std::min_element(near.begin(), near.end(), precedes);
   std::erase_if(near, [&](const Near& at) { return (at.position - best.position).norm() > 2 * band_; });
   return near;
+}
+
+double FaceSearch::first_hit(const Vec<double, 3>& x, const Vec<double, 3>& way,
+                             const std::function<bool(int)>& counts) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity(), wider = 1e-9;
+  double first = infinity;
+  const auto skips = [&](const Bounds<3>& box) {  // the lengths at which the ray is in the box
+    double from = 0, to = first;
+    for (int i = 0; i < 3; ++i) {
+      const double low = box.low[i] - band_ - x[i], high = box.high[i] + band_ - x[i];
+      if (way[i] == 0) {
+        if (low > 0 || high < 0) return true;
+        continue;
+      }
+      from = std::max(from, std::min(low / way[i], high / way[i]));
+      to = std::min(to, std::max(low / way[i], high / way[i]));
+    }
+    return from > to;
+  };
+  boxes_.visit(x, skips, [&](int f) {
+    if (!counts(f)) return;
+    const auto corner = corners(faces_[f]);
+    for (int k = 1; k + 1 < faces_[f].corners; ++k) {
+      Mat<double, 3> sides;  // x + length way = corner 0 + a side 1 + b side 2
+      sides << corner[k] - corner[0], corner[k + 1] - corner[0], -way;
+      const double volume = sides.determinant();
+      if (volume == 0) continue;
+      const Vec<double, 3> at = sides.inverse() * (x - corner[0]);
+      if (std::min({at[0], at[1], 1 - at[0] - at[1]}) >= -wider && at[2] > 0) first = std::min(first, at[2]);
+    }
+  });
+  return first;
 }
 
 std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const {
@@ -109,14 +154,11 @@ std::vector<FacePlace> FaceSearch::closest(const Vec<double, 3>& x, const Vec<do
 
 bool FaceSearch::is_past_border(const std::vector<Near>& places, const std::vector<Near>& ends,
                                 const Vec<double, 3>& x) const {
-  const auto has = [](const FacePlace& face, int node) {
-    return std::find(face.nodes.begin(), face.nodes.begin() + face.corners, node) != face.nodes.begin() + face.corners;
-  };
   for (const auto& near : places) {
     const auto corner = corners(near.place);
     for (int k = 0; k < near.place.corners; ++k) {
       const int from_node = near.place.nodes[k], to_node = near.place.nodes[(k + 1) % near.place.corners];
-      const auto is_beyond = [&](const Near& end) { return has(end.place, from_node) && has(end.place, to_node); };
+      const auto is_beyond = [&](const Near& end) { return end.place.has(from_node) && end.place.has(to_node); };
       if (!border_[near.face][k] && std::none_of(ends.begin(), ends.end(), is_beyond)) continue;
       const Vec<double, 3> along = (corner[(k + 1) % near.place.corners] - corner[k]).normalized();
       const Vec<double, 3> from = near.position - corner[k];

@@ -21,19 +21,35 @@ class FaceSearch {
   struct Near : NearestPlace {
     int face;
   };
+  /// Normals that make an angle with `outward` whose cosine is less than -`least`; all, if `outward` is zero.
+  struct Opposing {
+    Vec<double, 3> outward = Vec<double, 3>::Zero();
+    double least = 0;
+  };
   /// The closest places to x, which are as near as one another: on one face, or on several at an edge or a corner.
-  /// `counts(face)`: whether the face is looked at.
-  std::vector<Near> nearest(const Vec<double, 3>& x, const std::function<bool(int)>& counts) const;
+  /// `counts(face)`: whether the face is looked at; `opposing`: what holds for the normals of all that count.
+  std::vector<Near> nearest(const Vec<double, 3>& x, const std::function<bool(int)>& counts,
+                            const Opposing& opposing) const;
+  std::vector<Near> nearest(const Vec<double, 3>& x, const std::function<bool(int)>& counts) const {
+    return nearest(x, counts, {});
+  }
+  /// How far it is from x along `way`, a unit vector, to the first face that counts, length; infinite if none is there.
+  /// A quadrilateral is taken for two triangles.
+  double first_hit(const Vec<double, 3>& x, const Vec<double, 3>& way, const std::function<bool(int)>& counts) const;
 
   /// The closest place of the surface to x, on each face that has it and opposes `outward`, if that is not zero; none
   /// if x projects past a border of the surface, or past an edge beyond which it does not oppose. Of places that are
   /// equally close it is one inside of a face, then that of least x, y, z: geometry alone decides.
   std::vector<FacePlace> closest(const Vec<double, 3>& x, const Vec<double, 3>& outward) const;
 
+  Vec<double, 3> position(int node) const { return points_.col(node); }
+  Vec<double, 3> across(int face) const;  ///< area vector of a face
+  double size() const;                    ///< diagonal of the box of all faces, length; infinite if there is none
+  bool has(int face, int node) const { return faces_[face].has(node); }
+
  private:
   /// Whether x projects past an edge at which `places` are, and which a border or one of `ends` is beyond.
   bool is_past_border(const std::vector<Near>& places, const std::vector<Near>& ends, const Vec<double, 3>& x) const;
-  Vec<double, 3> across(int face) const;  ///< its area vector
   std::array<Vec<double, 3>, 4> corners(const FacePlace& face) const;
 
   Points<double> points_;

@@ -81,7 +81,7 @@ class PlacedSideFacet {
   /// Coordinates at which the line through p along n meets the facet.
   Vec<T, 2> met(const Vec<T, 3>& p, const Vec<T, 3>& n) const {
     constexpr int most = 30, layers = 2;  // (one step in T gives first derivatives, and another those of two layers)
-    constexpr double done = 1e-15;
+    constexpr double done = 1e-12;
     std::array<Vec<double, 3>, 4> corner;
     for (int k = 0; k < 4; ++k) corner[k] = values(corner_[k]);
     const Vec<double, 3> p_value = values(p), n_value = values(n);

@@ -1,6 +1,7 @@
-/// A side of the plane that is in contact with itself: what a vertex of it may face.
+/// A side that is in contact with itself: what a vertex of it may face.
 #pragma once
 
+#include "core/contact/face_search.hpp"
 #include "core/contact/surface.hpp"
 
 namespace stickslip {
@@ -16,13 +17,18 @@ inline bool is_beside_facet(double xi) {
   return xi >= -past_end && xi <= 1 + past_end;
 }
 
-/// A contact point that is a vertex of the curve that it faces: a side in contact with itself. It faces only patches
-/// that come after it on the curve, so of two positions that touch exactly one is the slave. It never faces a patch
-/// that it is a vertex of, nor a patch of its own wall.
+/// A contact point that is a vertex of the surface that it faces: a side in contact with itself. It faces only places
+/// that come after it, so of two places that touch exactly one is the slave. It never faces a patch that it is a vertex
+/// of, nor a patch of its own wall.
+///
+/// Vertices are numbered in the order in which they come. In the plane this is that of the curve, and a patch comes
+/// after the vertices before its start. In space it is that of order_in_space(), and a place comes where the mean of
+/// the numbers at its corners is, by its weights on the face.
 struct OwnVertex {
   int vertex = no_vertex;
   double max_depth = 0;         ///< length: beyond this depth it is not inside of a patch
-  std::vector<char> wall = {};  ///< per patch: whether it belongs to the wall of the vertex (own_vertex())
+  std::vector<char> wall = {};  ///< in the plane, per patch: whether it belongs to the wall of the vertex
+  double reach = 0;             ///< in space: how far patches of its wall are from it, less their sizes, length
 
   /// Number of patches from the one that was faced last within which it may be inside by all of max_depth; elsewhere by
   /// a share of that.
@@ -62,5 +68,34 @@ struct OwnVertex {
 /// vertex or to the end of the ray.
 OwnVertex own_vertex(const Surface<2>& patches, const Places<2>& positions, int vertex, const Vec<double, 2>& outward,
                      double mesh_size);
+
+/// The middle of the face of a patch in space.
+struct FaceMiddle {
+  int corners;
+  Vec<double, 3> place, along_s, along_t;  ///< the mean of the corners; the slopes y_s, y_t of the face there
+  double reach = 0;                        ///< distance of the corner that is farthest from it, length
+  /// Whether x projects to the face, as it is in its middle, or past an edge by no more than half its width.
+  bool is_beside(const Vec<double, 3>& x) const;
+};
+FaceMiddle face_middle(const Patch<3>& patch, const Places<3>& positions);
+
+/// The same in space. `faces`: those of the side, by its vertices. There a patch belongs to the wall if the vertex is
+/// behind it, and no farther from its middle than 3 thickness plus twice the reach of its corners (is_of_own_wall()).
+OwnVertex own_vertex(const FaceSearch& faces, int vertex, const Vec<double, 3>& outward, double mesh_size);
+
+/// Whether a patch belongs to the wall of a vertex in space. `start`: initial positions of the vertices of the side.
+bool is_of_own_wall(const OwnVertex& own, const Patch<3>& patch, const Places<3>& start);
+
+/// The vertices of a side in space that is in contact with itself, in the order in which they come: along a direction
+/// in which places that may touch are apart, so that of two walls that meet all of one comes before the other.
+///
+/// The direction is that of the ways across the voids of the solid: of the rays from the vertices along their normals
+/// that end at another place of the side, each by its area over the square of its length. If there is no void, it is
+/// that in which the side is longest. If several directions are equal, as in a round tube, it is one that is along no
+/// axis. It points to where the side has its longer tail.
+///
+///   facets     three or four vertices each, counter-clockwise seen from outside
+///   positions  of the start, 3 x vertices, length
+std::vector<int> order_in_space(const std::vector<std::vector<int>>& facets, const Places<3>& positions);
 
 }  // namespace stickslip

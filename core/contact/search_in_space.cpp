@@ -169,8 +169,57 @@ Facing PatchSearch<3>::larger_gap(const std::vector<Facing>& feet, const Vec<dou
   return best;
 }
 
+std::vector<FaceSearch::Near> PatchSearch<3>::nearest_faces(const Query& query) const {
+  const auto counts = [&](int patch) { return is_eligible(patch, query); };
+  return faces_.nearest(query.x, counts, {query.outward, query.least_against()});
+}
+
+/// Whether a vertex of this surface may touch a patch of it.
+bool PatchSearch<3>::may_be_touched(int patch, const Query& query) const {
+  return !faces_.has(patch, query.own->vertex) && !is_of_own_wall(*query.own, patches_[patch], *query.start);
+}
+
 bool PatchSearch<3>::is_eligible(int patch, const Query& query) const {
-  return query.outward == Vec<double, 3>::Zero() || opposes<3>(across(patch), query.outward);
+  if (!query.own) return query.outward == Vec<double, 3>::Zero() || opposes<3>(across(patch), query.outward);
+  const Vec<double, 3> normal = across(patch).normalized();
+  if (query.outward.dot(normal) > -query.least_against() * query.outward.norm()) return false;
+  if (!may_be_touched(patch, query)) return false;
+  const FaceMiddle here = face_middle(patches_[patch], positions_);
+  const double depth = -(query.x - here.place).dot(normal);
+  if (depth <= 0) return true;
+  bool is_near_last = false;
+  if (query.last != no_patch) {
+    const FaceMiddle last = face_middle(patches_[query.last], positions_);
+    is_near_last = (here.place - last.place).norm() <= OwnVertex::neighbourhood * 2 * last.reach;
+  }
+  return here.is_beside(query.x) && depth <= (is_near_last ? 1 : OwnVertex::share_of_depth) * query.own->max_depth;
+}
+
+bool PatchSearch<3>::comes_after(const Facing& at, const OwnVertex& own) const {
+  const Patch<3>& patch = patches_[at.patch];
+  const auto weights = face_weights<double>(patch.corners, at.at[0], at.at[1]).value;
+  double number = 0;
+  for (int k = 0; k < patch.corners; ++k) number += weights[k] * patch.corner(k);
+  return number > own.vertex;
+}
+
+Facing PatchSearch<3>::facing_itself(const Vec<double, 3>& x, const Vec<double, 3>& outward, const OwnVertex& own,
+                                     int last, const Places<3>& start) const {
+  const Query query{x, outward, &own, last, &start};
+  const Facing foot = nearest_facing(query);
+  // Newton's method may have left the eligible patches.
+  if (foot.patch != no_patch && is_eligible(foot.patch, query) && comes_after(foot, own)) return foot;
+  return {.distance = faces_.size()};
+}
+
+int PatchSearch<3>::nearest_of_itself(const Vec<double, 3>& x, const Vec<double, 3>& outward, const OwnVertex& own,
+                                      int last, const Places<3>& start) const {
+  if (!x.allFinite()) return no_patch;
+  const Query query{x, outward, &own, last, &start};
+  const auto may_touch = [&](int patch) { return may_be_touched(patch, query); };
+  auto near = nearest_faces(query);
+  if (near.empty()) near = faces_.nearest(x, may_touch);
+  return near.empty() ? no_patch : near.front().face;
 }
 
 /// Whether a foot is beyond an edge at which the eligible patches end.
@@ -200,7 +249,7 @@ Facing PatchSearch<3>::beyond_edges(const Facing& at, const Query& query) const 
 Facing PatchSearch<3>::nearest_facing(const Query& query) const {
   constexpr int hops = 8;
   if (!query.x.allFinite()) return {};
-  const auto near = faces_.nearest(query.x, [&](int patch) { return is_eligible(patch, query); });
+  const auto near = nearest_faces(query);
   if (near.empty()) return {};
   const auto foot = [&](const Near& from, int most) { return newton_foot({from.face, from.place.at}, query.x, most); };
   const Near* first = &near.front();

@@ -140,6 +140,13 @@ Surface<3> make_surface<3>(const std::vector<std::vector<int>>& faces, Smoothing
   return patches;
 }
 
+std::vector<std::vector<int>> corners_of(const Surface<3>& patches) {
+  std::vector<std::vector<int>> corners;
+  for (const auto& patch : patches)
+    corners.emplace_back(patch.vertices.begin(), patch.vertices.begin() + patch.corners);
+  return corners;
+}
+
 double beyond_edge(const Patch<3>& patch, int edge, const Vec<double, 2>& at) {
   if (edge == 0) return -at[1];
   if (edge == patch.corners - 1) return -at[0];

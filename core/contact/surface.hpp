@@ -99,6 +99,9 @@ template <int D>
 Surface<D> make_surface(const std::vector<std::vector<int>>& facets, Smoothing smoothing, double corner,
                         const Places<D>& positions);
 
+/// The vertices at the corners of each patch.
+std::vector<std::vector<int>> corners_of(const Surface<3>& patches);
+
 /// How far a place is beyond an edge of a patch, in its coordinates; negative inside.
 inline double beyond_edge(const Patch<2>&, int end, const Vec<double, 2>& at) { return end == 1 ? at[0] - 1 : -at[0]; }
 double beyond_edge(const Patch<3>& patch, int edge, const Vec<double, 2>& at);

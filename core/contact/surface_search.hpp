@@ -93,11 +93,25 @@ class PatchSearch<2> {
 /// over: where it joins, the surface ends as at a border.
 template <>
 class PatchSearch<3> {
+ public:
+  /// What a vertex of this surface faces, which is in contact with itself, as on a curve of the plane. `start`: initial
+  /// positions of the vertices. It may be inside by all of own.max_depth within 8 widths of patch `last` from its own
+  /// middle. The place that it faces comes after it (OwnVertex).
+  Facing facing_itself(const Vec<double, 3>& x, const Vec<double, 3>& outward, const OwnVertex& own, int last,
+                       const Places<3>& start) const;
+  int nearest_of_itself(const Vec<double, 3>& x, const Vec<double, 3>& outward, const OwnVertex& own, int last,
+                        const Places<3>& start) const;
+
  protected:
   PatchSearch(const Surface<3>& patches, const Places<3>& positions);
 
+  /// As on a curve. `start`: set with `own`.
   struct Query {
     Vec<double, 3> x, outward;
+    const OwnVertex* own = nullptr;
+    int last = no_patch;
+    const Places<3>* start = nullptr;
+    double least_against() const { return own ? stickslip::least_against : least_against_a_side; }
   };
   Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing at, const Vec<double, 3>& x, int hops) const;
@@ -113,7 +127,10 @@ class PatchSearch<3> {
  private:
   using Near = FaceSearch::Near;
   Vec<double, 3> across(int patch) const;
+  std::vector<Near> nearest_faces(const Query& query) const;
+  bool may_be_touched(int patch, const Query& query) const;
   bool is_eligible(int patch, const Query& query) const;
+  bool comes_after(const Facing& at, const OwnVertex& own) const;
   bool is_past_end(const Facing& at, const Query& query) const;
   Facing beyond_edges(const Facing& at, const Query& query) const;
   Facing larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const;

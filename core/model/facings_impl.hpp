@@ -75,6 +75,24 @@ struct MovedSurface {
   }
 };
 
+/// What a vertex of a side in contact with itself faces, and the nearest patch that it may face (PatchSearch).
+template <int D>
+Facing facing_itself(const SurfaceSearch<D>& search, const MasterSurface& side, const Vec<double, D>& x,
+                     const Vec<double, D>& outward, const OwnVertex& own, int last) {
+  if constexpr (D == 2)
+    return search.facing_itself(x, outward, own, last);
+  else
+    return search.facing_itself(x, outward, own, last, side.start);
+}
+template <int D>
+int nearest_of_itself(const SurfaceSearch<D>& search, const MasterSurface& side, const Vec<double, D>& x,
+                      const Vec<double, D>& outward, const OwnVertex& own, int last) {
+  if constexpr (D == 2)
+    return search.nearest_of_itself(x, outward, own, last);
+  else
+    return search.nearest_of_itself(x, outward, own, last, side.start);
+}
+
 /// Sets what the points of an integrated curve face.
 template <class T>
 void find_moved_segments(const ContactInput<T>& input, int curve, const Vector<T>& compact,
@@ -112,12 +130,9 @@ void find_along_surface(const ContactInput<T>& input, int surface, const Vector<
       found[p] = now.search.foot_on(kept[p], x);
       continue;
     }
-    if constexpr (D == 2)
-      if (point.own.vertex != no_vertex) {
-        found[p] = now.search.facing_itself(x, now.outward(point), point.own, last_faced(input, p));
-        continue;
-      }
-    found[p] = now.search.facing(x, now.outward(point), !input.previous.faced[p]);
+    found[p] = point.own.vertex == no_vertex ? now.search.facing(x, now.outward(point), !input.previous.faced[p])
+                                             : facing_itself(now.search, model.surfaces[surface], x, now.outward(point),
+                                                             point.own, last_faced(input, p));
   }
 }
 
@@ -134,22 +149,28 @@ std::vector<Facing> facings(const ContactInput<T>& input, const Vector<T>& compa
   return found;
 }
 
-template <class T>
-void place_open_vertices(const ContactInput<T>& input, const Vector<T>& compact, ContactField<T>& field) {
-  std::optional<MovedSurface<T, 2>> now;
+template <class T, int D>
+void place_open_vertices_beside(const ContactInput<T>& input, const Vector<T>& compact, ContactField<T>& field) {
+  std::optional<MovedSurface<T, D>> now;
   for (int p = 0, of = -1; p < static_cast<int>(field.facing.size()); ++p) {
     const auto& point = input.model.points[p];
     auto& facing = field.facing[p];
     if (point.own.vertex == no_vertex || point.foot < 0 || facing.patch != no_patch) continue;
-    if (of != point.surface) now.emplace(input, input.model.surfaces[point.surface], compact);
+    const MasterSurface& side = input.model.surfaces[point.surface];
+    if (of != point.surface) now.emplace(input, side, compact);
     of = point.surface;
     facing.nearest =
-        now->search.nearest_of_itself(now->slave(point), now->outward(point), point.own, last_faced(input, p));
-    PlacedPoint<T, 2> at;
+        nearest_of_itself(now->search, side, now->slave(point), now->outward(point), point.own, last_faced(input, p));
+    PlacedPoint<T, D> at;
     if (facing.nearest != no_patch)
-      place_beside(positions_at(input.model, input.slots, compact, input.time), point, facing.nearest, at);
-    field.foot[point.foot] = at.foot[0];
+      place_beside(positions_at<D>(input.model, input.slots, compact, input.time), point, facing.nearest, at);
+    for (int i = 0; i < point.feet(D); ++i) field.foot[point.foot + i] = at.foot[i];
   }
+}
+
+template <class T>
+void place_open_vertices(const ContactInput<T>& input, const Vector<T>& compact, ContactField<T>& field) {
+  with_dimension(input.model.dimension, [&]<int D>() { place_open_vertices_beside<T, D>(input, compact, field); });
 }
 
 }  // namespace detail

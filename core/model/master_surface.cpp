@@ -93,6 +93,19 @@ void number_vertices(std::vector<std::vector<int>>& facets, MasterSurface& curve
     }
 }
 
+/// Numbers the vertices of a side in space that touches itself in their order.
+void order_vertices(const Points<double>& points, std::vector<std::vector<int>>& facets, MasterSurface& side) {
+  const auto order = order_in_space(facets, points(Eigen::all, side.nodes));
+  std::vector<int> number(order.size()), nodes(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    number[order[k]] = static_cast<int>(k);
+    nodes[k] = side.nodes[order[k]];
+  }
+  side.nodes = std::move(nodes);
+  for (auto& facet : facets)
+    for (int& vertex : facet) vertex = number[vertex];
+}
+
 }  // namespace
 
 QuadraticEdges::QuadraticEdges(const SideSet& side) {
@@ -147,11 +160,15 @@ std::pair<MasterSurface, Places<D>> make_master(const Model& model, const Points
     if constexpr (D == 2)
       if (contact.is_of_itself() || contact.segment) facets = ordered_facets(facets, points);
     number_vertices(facets, master);
+    if constexpr (D == 3)
+      if (contact.is_of_itself()) order_vertices(points, facets, master);
     places.resize(D, static_cast<Eigen::Index>(master.nodes.size()));
     for (std::size_t v = 0; v < master.nodes.size(); ++v)
       places.col(static_cast<Eigen::Index>(v)) = points.col(master.nodes[v]).template head<D>();
   }
   master.vertex_count = static_cast<int>(places.cols());
+  if constexpr (D == 3)
+    if (contact.is_of_itself()) master.start = places;
   try {
     master.surface = make_surface<D>(facets, contact.smoothing, contact.corner, places);
   } catch (const std::runtime_error& error) {

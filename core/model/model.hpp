@@ -55,6 +55,7 @@ struct MasterSurface {
   std::vector<int> ends = {};
   std::vector<std::array<int, 3>> edges = {};  ///< per facet: the side of a quadratic element that it is half of
   std::map<int, OwnVertex> own = {};           ///< of a side that is integrated against itself: per node
+  Places<3> start = {};                        ///< of a side in space that touches itself: its vertices at the start
   bool is_rigid() const { return obstacle >= 0; }
   bool is_integrated() const { return !facets.empty(); }
   /// Its patches. pre: the model has D dimensions.

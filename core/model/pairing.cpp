@@ -149,24 +149,52 @@ void pair_nodes(Model& model, const Points<double>& points, const Pairing& pairi
   }
 }
 
+/// The vertices of a side in contact with itself: what each may face.
+template <int D>
+class OwnVertices {
+ public:
+  /// Both must outlive this. `places`: initial positions of the vertices.
+  OwnVertices(const MasterSurface& side, const Places<D>& places) : side_(side), places_(places) {
+    for (std::size_t v = 0; v < side.nodes.size(); ++v) vertex_of_[side.nodes[v]] = static_cast<int>(v);
+    if constexpr (D == 3) faces_.emplace(places, corners_of(side.patches<3>()));
+  }
+  OwnVertex at(int node, const Vec<double, D>& outward, double mesh_size) const {
+    const int vertex = vertex_of_.at(node);
+    if constexpr (D == 2)
+      return own_vertex(side_.patches<2>(), places_, vertex, outward, mesh_size);
+    else
+      return own_vertex(*faces_, vertex, outward, mesh_size);
+  }
+  /// Whether a vertex comes before some patch. (In space there is always a place beyond; the last vertex faces none.)
+  bool may_face_some(const OwnVertex& own) const {
+    if constexpr (D == 2)
+      return own.may_face_some(side_.patches<2>());
+    else
+      return own.vertex + 1 < side_.vertex_count;
+  }
+
+ private:
+  const MasterSurface& side_;
+  const Places<D>& places_;
+  std::map<int, int> vertex_of_;  ///< by node
+  std::optional<FaceSearch> faces_;
+};
+
 /// What a slave node faces of a surface at the start. Sets what it may face, if the surface is its own side; in space
 /// also this place on each patch that has it.
 template <int D>
-Facing facing_of(const SurfaceSearch<D>& search, const MasterSurface& master, const Places<D>& places, bool of_itself,
-                 const Vec<double, D>& x, const Vec<double, D>& outward, ContactPoint& point) {
-  const Surface<D>& patches = master.patches<D>();
-  if constexpr (D == 2)
-    if (of_itself) {
-      const auto found = std::find(master.nodes.begin(), master.nodes.end(), point.nodes[0]);
-      point.own = own_vertex(patches, places, static_cast<int>(found - master.nodes.begin()), outward, point.mesh_size);
-      if (!point.own.may_face_some(patches)) return {};
-      Facing facing = search.facing_itself(x, outward, point.own, no_patch);
-      if (facing.patch == no_patch) facing.nearest = search.nearest_of_itself(x, outward, point.own, no_patch);
-      return facing;
-    }
-  const Facing facing = search.facing(x, outward);
+Facing facing_of(const SurfaceSearch<D>& search, const MasterSurface& master, const Vec<double, D>& x,
+                 const Vec<double, D>& outward, ContactPoint& point) {
+  Facing facing;
+  if (point.own.vertex == no_vertex) {
+    facing = search.facing(x, outward);
+  } else {
+    facing = detail::facing_itself(search, master, x, outward, point.own, no_patch);
+    if (facing.patch == no_patch)
+      facing.nearest = detail::nearest_of_itself(search, master, x, outward, point.own, no_patch);
+  }
   if constexpr (D == 3)
-    if (facing.patch != no_patch) point.starts = patches_at(patches, facing);
+    if (facing.patch != no_patch) point.starts = patches_at(master.patches<3>(), facing);
   return facing;
 }
 
@@ -186,7 +214,8 @@ void pair_along_surface(Model& model, const Points<double>& points, const Pairin
   auto [master, places] = make_master<D>(model, points, pairing.index, pairing.obstacle, pairing.master.facets);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   const SurfaceSearch<D> search(master.template patches<D>(), places);
-  const bool of_itself = model.scene.contacts[pairing.index].is_of_itself();
+  std::optional<OwnVertices<D>> own;
+  if (model.scene.contacts[pairing.index].is_of_itself()) own.emplace(master, places);
   for (int node : pairing.slave.nodes) {
     if (has_no_area(model, points, pairing.slave, node)) continue;
     ContactPoint point = slave_point(model, points, pairing, node);
@@ -195,9 +224,11 @@ void pair_along_surface(Model& model, const Points<double>& points, const Pairin
         has_side ? slave_normal<D>(point.area_facets, points) : Vec<double, D>::Zero().eval();
     point.master = ContactPoint::Master::surface;
     point.surface = static_cast<int>(model.surfaces.size());
-    point.facing = facing_of<D>(search, master, places, of_itself, points.col(node), outward, point);
-    if constexpr (D == 2)
-      if (of_itself && !point.own.may_face_some(master.template patches<2>())) continue;
+    if (own) {
+      point.own = own->at(node, outward, point.mesh_size);
+      if (!own->may_face_some(point.own)) continue;
+    }
+    point.facing = facing_of<D>(search, master, points.col(node), outward, point);
     const bool faces = point.facing.patch != no_patch;
     if (!faces && !model.scene.finite_strain) continue;
     point.shares_normal = !model.scene.finite_strain && pairing.obstacle < 0 && has_side;
@@ -308,8 +339,6 @@ void pair_contact(Model& model, const Points<double>& points, int index) {
   if (pairing.obstacle < 0) {
     pairing.master = sides.master;  // of a side that touches itself the axis tells how thick it is
     if (!contact.is_of_itself()) pairing.master = surface_of(model, points, pairing.master);
-    if (model.dimension == 3 && contact.is_of_itself())
-      throw ModelError("in space a side has no contact with itself", where);
     if (pairing.master.facets.empty()) throw ModelError("the master side has no facets", where);
   } else if (model.dimension == 3 && !is_in_space(model.scene.obstacles[pairing.obstacle].shape)) {
     throw ModelError("this surface is not made for space", "/obstacles/" + contact.master);

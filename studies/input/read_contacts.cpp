@@ -54,10 +54,6 @@ std::optional<NamedSide> touching_side(const JsonNode& node, SceneReading& readi
 
 /// `of_itself`: it is the slave too.
 void check_master(const JsonNode& node, const std::optional<NamedSide>& slave, bool of_itself, SceneReading& reading) {
-  if (reading.dimension() == 3 && of_itself) {
-    node.error("is " + shown(node.value()) + ", the slave; in the space solid no side touches itself");
-    return;
-  }
   const auto master = touching_side(node, reading);
   if (!master) return;
   if (master->side.facets.empty()) node.error("is " + shown(node.value()) + ", single nodes; a master needs facets");
@@ -231,8 +227,6 @@ void read_contact(const std::string& name, const JsonNode& node, SceneReading& r
   contact.segment = is_solid && is_free && reading.dimension() == 2;
   const auto touches_itself = between ? node.find("self") : std::nullopt;
   const bool self = touches_itself && touches_itself->boolean().value_or(false);
-  if (self && reading.dimension() == 3)
-    touches_itself->must_be("false in the space solid: a body does not touch itself there");
   if (const auto discretization = node.find("discretization")) {
     contact.segment = discretization->choice(choices_of(described, "discretization")) == "segment";
     const bool of_itself = between ? self : contact.is_of_itself();

@@ -56,8 +56,11 @@ class Contact {
       if (is_inner && found->second.dot(facet.chord(scene.points).normalized()) < 0.5 - at_end)
         corners_.insert(facet.ends[0]);
     }
-    for (const int node : side_.nodes)
-      if (itself) master_.set_wall(seeker(node, scene.points));
+    std::vector<Seeker> seekers;
+    for (const int node : side_.nodes) seekers.push_back(seeker(node, scene.points));
+    if (itself && faces_) faces_->touch_itself(seekers);
+    for (const Seeker& at : seekers)
+      if (itself && !faces_) master_.set_wall(at);
     std::erase_if(areas_, [&](const auto& of) {
       const int node = of.first;  // (no area is left on the axis)
       if (body_.in_space() && segment) return false;
@@ -78,6 +81,7 @@ class Contact {
       Touch& touch = touches[node];
       Seeker point = seeker(node, x);
       point.comes_on = last.contains(node) && !last.at(node).faces;
+      point.faced = last.contains(node) && last.at(node).faces ? last.at(node).place.patch : -1;
       touch = segment && body_.in_space() ? over_samples(node)
               : segment                   ? on_pieces(node, x)
                                           : Touch{faces_ ? faces_->foot(point) : master_.foot(point), node, area};

@@ -8,7 +8,9 @@
 /// that oppose the slave's side.
 #pragma once
 
-#include "studies/verify/masters.hpp"
+#include <functional>
+
+#include "studies/verify/own_walls.hpp"
 #include "studies/verify/patches.hpp"
 
 namespace stickslip::verify {
@@ -22,6 +24,7 @@ class Faces {
   }
 
   void place_nodes(const Field& x) {
+    x_ = x;
     nets_.clear();
     boxes_.clear();
     for (const auto& patch : patches_) {  // (differences are exact where a coordinate is one of all nodes)
@@ -39,9 +42,19 @@ class Faces {
     return (Mat3() << y.rightCols<2>(), y.col(1).cross(y.col(2)).normalized()).finished();
   }
 
+  /// The side is its own master from now on. `seekers`: its nodes at the start, where the nodes still are.
+  void touch_itself(const std::vector<Seeker>& seekers) {
+    std::vector<Nodes> faces;
+    for (const auto& patch : patches_) faces.push_back(patch.face);
+    own_.emplace(x_, faces, seekers);
+  }
+
   Foot foot(const Seeker& seeker) const {
     const Vec3 &x = seeker.x, &outward = seeker.outward;
-    auto near = closest(x, finite_ ? outward : Vec3(0, 0, 0));
+    auto near = own_      ? nearest(x, [&](int p) { return own_->may_face(seeker, p, x_); })
+                : finite_ ? closest(x, outward)
+                          : closest(x, Vec3(0, 0, 0));
+    if (near.empty() && own_) near = nearest(x, [&](int p) { return own_->may_touch(seeker.node, p); });
     if (near.empty()) return {};
     const Near first = near[0];
     const bool faces = settle_on(near, seeker);
@@ -52,8 +65,8 @@ class Faces {
     const Eigen::VectorXd N = patches_[p].weigh * blend(patches_[p].sides(), Vec2(s, t)).col(0);
     for (Eigen::Index k = 0; k < N.size(); ++k) foot.weights.emplace_back(patches_[p].nodes[k], -N[k]);
     if (finite_) return foot;
-    Vec3 normal = Vec3::Zero();
-    for (const auto& at : near) normal += at.normal;
+    Vec3 normal = own_ ? best.normal : Vec3(0, 0, 0);
+    for (const auto& at : own_ ? std::vector<Near>{} : near) normal += at.normal;
     normal.normalize();
     foot.normal = (normal - seeker.against(normal).normalized()).normalized();  // the bisector of the two sides
     foot.gap = foot.normal.dot(x - foot.y);
@@ -122,10 +135,13 @@ class Faces {
   /// The closest place of all patches but those that look the way of a side, in each that has it, the best first. A
   /// patch is in the box of its control points.
   std::vector<Near> closest(const Vec3& x, const Vec3& outward) const {
+    return nearest(x, [&](int p) { return !looks_away(p, outward); });
+  }
+  std::vector<Near> nearest(const Vec3& x, const std::function<bool(int)>& counts) const {
     std::vector<std::pair<double, int>> boxes;  // with their distance
     for (int p = 0; p < std::ssize(patches_); ++p) {
       const Vec3 &low = boxes_[p][0], &high = boxes_[p][1];
-      if (!looks_away(p, outward)) boxes.emplace_back((x - x.cwiseMax(low).cwiseMin(high)).norm(), p);
+      if (counts(p)) boxes.emplace_back((x - x.cwiseMax(low).cwiseMin(high)).norm(), p);
     }
     std::ranges::sort(boxes);
     std::vector<Near> near;
@@ -162,15 +178,24 @@ class Faces {
   /// by a patch is not where it is outside by a nearer one.
   bool settle_on(std::vector<Near>& near, const Seeker& seeker) const {
     const Vec3 &x = seeker.x, &outward = seeker.outward;
-    for (const auto& at : finite_ ? std::exchange(near, {}) : std::vector<Near>{})
+    const bool moves = finite_ || own_;
+    for (const auto& at : moves ? std::exchange(near, {}) : std::vector<Near>{})
       if (const auto on = across(at.place.patch, {at.place.xi, at.place.eta}, Eigen::Matrix2d::Identity(), x))
         near.push_back(this->near(at.place.patch, *on, x));
-    if (!finite_) std::erase_if(near, [&](const Near& at) { return looks_away(at.place.patch, outward); });
+    if (!moves) std::erase_if(near, [&](const Near& at) { return looks_away(at.place.patch, outward); });
     if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(at, x, outward); })) return false;
-    if (!finite_ || near.empty()) return !near.empty();
+    if (!moves || near.empty()) return !near.empty();
     std::ranges::sort(near, {}, [](const Near& at) { return at.place.patch; });
     const double most = std::ranges::max(near, {}, &Near::gap).gap - at_end * size(near[0].place.patch);
     std::iter_swap(near.begin(), std::ranges::find_if(near, [&](const Near& at) { return at.gap >= most; }));
+    if (own_) {
+      const auto& [p, s, t] = near[0].place;
+      const int m = patches_[p].sides();
+      const Eigen::VectorXd N =
+          m == 3 ? Eigen::VectorXd(Eigen::Vector3d(1 - s - t, s, t))
+                 : Eigen::VectorXd(Eigen::Vector4d((1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t));
+      return own_->may_face(seeker, p, x_) && own_->comes_after(seeker.node, p, N);
+    }
     const double edge = std::sqrt(boxes_[near[0].place.patch][2].norm());  // of a square of its area
     if (near[0].gap >= -1e-6 * edge || outward.isZero(0)) return true;
     auto all = closest(x, Vec3::Zero());
@@ -181,9 +206,11 @@ class Faces {
   }
 
   bool finite_;
+  Field x_;  ///< where nodes are
   std::vector<FacePatch> patches_;
   std::vector<Field> nets_;                 ///< control points
   std::vector<std::array<Vec3, 3>> boxes_;  ///< two ends of what they are in; area vectors of faces
+  std::optional<OwnWalls> own_;             ///< of a side that touches itself
 };
 
 }  // namespace stickslip::verify

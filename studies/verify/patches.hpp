@@ -42,9 +42,12 @@ inline Vec2 corner_at(int sides, int j) {
 }
 inline Vec2 edge_along(int sides, int j) { return corner_at(sides, j + 1) - corner_at(sides, j); }
 
-/// p^2 q / (p + q), how f+ of a corner is blended with f-; beyond an edge its Taylor polynomial of second order.
+/// p^2 q / (p + q), how f+ of a corner is blended with f-; beyond an edge its Taylor polynomial of second order, and
+/// where p + q <= 0, which no edge is nearest to, that of the corner in the direction p = q.
 inline std::complex<double> blend_at_corner(std::complex<double> p, std::complex<double> q) {
-  const auto p0 = p.real() > 0 ? p : 0.0, q0 = q.real() > 0 ? q : 0.0, a = p0 + q0 == 0.0 ? 0.5 : p0 / (p0 + q0);
+  const bool is_corner = (p + q).real() <= 0;
+  const auto p0 = is_corner || p.real() <= 0 ? 0.0 : p, q0 = is_corner || q.real() <= 0 ? 0.0 : q;
+  const auto a = is_corner ? 0.5 : p0 / (p0 + q0);
   const auto b = 1.0 - a, dp = p - p0, dq = q - q0;
   return p0 * q0 * a + q0 * a * (1.0 + b) * dp + p0 * a * a * dq + b * b * b * dp * dp +
          a * a * (1.0 + 2.0 * b) * dp * dq - a * a * a * dq * dq;

@@ -117,6 +117,36 @@ Scene segmented(Scene scene) {
   return scene;
 }
 
+/// Half a rubber tube that two rough drums pinch until its inside touches itself, first at its ends. (Without friction
+/// there: where a slip begins of a point that comes onto an end is not the same in space.)
+Scene pinched_tube() {
+  Scene s;
+  s.finite_strain = true;
+  s.legs = {{1, 12}};
+  RingMesh ring;
+  ring.center = {0.0, 0.0};
+  ring.inner = scenes::parameter(s, "inner", 8.5);
+  ring.outer = 10.0;
+  ring.from_angle = 90.0;
+  ring.to_angle = 270.0;
+  ring.cells = {2, 16};
+  s.bodies = {{"tube", ring, NeoHookean{scenes::parameter(s, "E", 100), 0.3}, "", 1.0}};
+  const Number mu = scenes::parameter(s, "mu", 0.2);
+  for (const auto& [name, y] : {std::pair("above", 15.0), std::pair("below", -15.0)}) {
+    s.obstacles.push_back({name, Circle{{0.0, y}, 5.0}, {{'y', scenes::table({{0, 0.0}, {1, y > 0 ? -9.5 : 9.5}})}}});
+    s.contacts.push_back(scenes::contact(name, "tube.outer", name));
+    s.contacts.back().friction = mu;
+  }
+  s.contacts.push_back(scenes::contact("inside", "tube.inner", "tube.inner"));
+  s.contacts.back().smoothing = Smoothing::catmull_rom;
+  for (const char* cut : {"tube.start", "tube.end"})
+    s.supports.push_back(scenes::support(cut, {{'x', scenes::table({{0, 0.0}})}}));
+  s.responses = {scenes::response("press", Kind::contact_force, "above", "normal"),
+                 scenes::response("touch", Kind::contact_force, "inside", "normal"),
+                 scenes::response("energy", Kind::strain_energy, "")};
+  return s;
+}
+
 std::vector<Scene> plane_scenes() {
   const LinearElastic elastic{1000.0, 0.3};
   const NeoHookean rubber{1000.0, 0.3, NeoHookean::Volumetric::log};
@@ -143,7 +173,8 @@ std::vector<Scene> plane_scenes() {
                          segmented(drawn_block(elastic, false)),
                          segmented(over_a_ridge(Smoothing::none, false)),
                          segmented(scenes::two_boxes(5, 8)),
-                         scenes::two_disks(6, true)};
+                         scenes::two_disks(6, true),
+                         pinched_tube()};
   for (auto& scene : all) {  // what the plane alone can be asked
     std::erase_if(scene.responses, [](const Response& response) {
       return response.component == Response::Component::moment || response.kind == Kind::contact_half_width;

@@ -2,11 +2,14 @@
 /// derivatives of every scheme.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <ctime>
 
 #include "core/contact/foot_in_plane.hpp"
+#include "core/contact/foot_in_space.hpp"
 #include "core/contact/surface_search.hpp"
 #include "tests/support/blocks.hpp"
+#include "tests/support/extruded.hpp"
 #include "tests/support/finite_strain.hpp"
 
 namespace stickslip::self_contact_test {
@@ -100,6 +103,89 @@ TEST(SelfContact, FacesTheOtherArmAndNotThroughTheWall) {
   }
 }
 
+/// The same wall in space, drawn out by layers along z. Vertices are in the order of the side.
+struct DrawnFold {
+  static constexpr int layers = 2;
+  Surface<3> patches;
+  Places<3> places;
+  std::vector<std::vector<int>> facets;
+  std::vector<int> number;  ///< by vertex of the plane's fold + its count x layer
+  DrawnFold(int pieces, Smoothing smoothing) {
+    const Fold plane(pieces, smoothing);
+    const int count = static_cast<int>(plane.places.cols());
+    Places<3> drawn(3, (layers + 1) * count);
+    for (int layer = 0; layer <= layers; ++layer)
+      for (int v = 0; v < count; ++v) drawn.col(layer * count + v) << plane.places.col(v), layer;
+    for (int layer = 0; layer < layers; ++layer)
+      for (int v = 0; v < count; ++v) {
+        const int a = layer * count + v, b = layer * count + (v + 1) % count;
+        facets.push_back({a, b, b + count, a + count});  // the solid is on the left of a -> b
+      }
+    const auto order = order_in_space(facets, drawn);
+    number.resize(order.size());
+    places.resize(3, drawn.cols());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      number[order[k]] = static_cast<int>(k);
+      places.col(static_cast<Eigen::Index>(k)) = drawn.col(order[k]);
+    }
+    for (auto& facet : facets)
+      for (int& v : facet) v = number[v];
+    patches = make_surface<3>(facets, smoothing, 30, places);
+  }
+};
+
+TEST(SelfContact, InSpaceFacesTheOtherArmAndNotThroughTheWall) {
+  for (const Smoothing smoothing : {Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline}) {
+    constexpr int pieces = 8, count = 8 * pieces;
+    const DrawnFold fold(pieces, smoothing);
+    const SurfaceSearch<3> search(fold.patches, fold.places);
+    const FaceSearch faces(fold.places, fold.facets);
+    const auto faced = [&](int vertex, double up, double shift, int last = no_patch) {
+      const int v = fold.number[count + vertex];  // of the middle layer
+      const Vec<double, 3> outward(0, up, 0), at = fold.places.col(v) + Vec<double, 3>(0, shift, 0);
+      return search.facing_itself(at, outward, own_vertex(faces, v, outward, 0.5), last, fold.places);
+    };
+    for (int k = 1; k < pieces; ++k) {
+      const Facing across = faced(k, 1, 0);
+      ASSERT_NE(across.patch, no_patch) << k;
+      const auto weights = place_weights(fold.patches[across.patch], across.at);
+      Vec<double, 3> foot = Vec<double, 3>::Zero();
+      for (Eigen::Index i = 0; i < weights.rows(); ++i)
+        foot += weights(i, 0) * fold.places.col(fold.patches[across.patch].vertices[i]);
+      EXPECT_LT((foot - Vec<double, 3>(fold.places(0, fold.number[count + k]), 2.5, 1)).norm(), 1e-9);
+      EXPECT_NE(faced(k, 1, 1.7).patch, no_patch) << "0.2 inside";
+      EXPECT_NE(faced(k, 1, 2.4, across.patch).patch, no_patch) << "0.9 inside, from in front";
+      EXPECT_EQ(faced(k, 1, 2.4).patch, no_patch) << "0.9 inside of what it did not face";
+      EXPECT_EQ(faced(k, 1, 2.6, across.patch).patch, no_patch) << "through all of the other wall";
+      EXPECT_EQ(faced(2 * pieces + k, -1, 0).patch, no_patch) << "the other way round it is the slave";
+      for (const auto& [side, up] : {std::pair(4, 1.0), std::pair(6, -1.0)}) {  // what is behind them is the wall
+        const Facing none = faced(side * pieces + k, up, 0);
+        EXPECT_EQ(none.patch, no_patch) << side;
+        EXPECT_NEAR(none.distance, std::hypot(5, 3.5, DrawnFold::layers), 1e-12) << "the size of the side";
+      }
+    }
+  }
+}
+
+// Whatever the numbers of its vertices, and turned in space: one wall comes before the other.
+TEST(SelfContact, InSpaceHasAnOrderThatNumbersAndFramesDoNotChange) {
+  const DrawnFold fold(4, Smoothing::none);
+  const int count = static_cast<int>(fold.places.cols());
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.9, Eigen::Vector3d(1, 2, -2).normalized()).toRotationMatrix();
+  Places<3> places(3, count);
+  auto facets = fold.facets;
+  const auto renumbered = [&](int v) { return (7 * v + 3) % count; };  // (7 and 96 have no common factor)
+  for (int v = 0; v < count; ++v) places.col(renumbered(v)) = turn * fold.places.col(v);
+  for (auto& facet : facets)
+    for (int& v : facet) v = renumbered(v);
+  const auto order = order_in_space(facets, places);
+  std::vector<double> heights;  // in the frame of the fold, whose void is crossed along y
+  for (const int v : order) heights.push_back((turn.transpose() * places.col(v))[1]);
+  if (heights.front() > heights.back())
+    std::reverse(heights.begin(), heights.end());  // (the fold is as long either way)
+  for (std::size_t k = 0; k + 1 < heights.size(); ++k) EXPECT_LE(heights[k], heights[k + 1] + 1e-12);
+}
+
 // --- a ring that is open, and closes ---------------------------------------------------------------------------------
 
 /// A rubber C: its start is held, pressure from all around closes it, with friction where the ends meet, and a force
@@ -162,6 +248,38 @@ void expect_that_of_two_sides(Geometry geometry) {
 
 TEST(SelfContact, OfABoundaryIsThatOfTheTwoSidesThatMeet) {
   for (const Geometry geometry : {Geometry::facets, Geometry::segments}) expect_that_of_two_sides(geometry);
+}
+
+TEST(SelfContact, InSpaceIsThatOfTheTwoSidesThatMeet) {
+  for (const Method& method : finite_methods()) {
+    if (std::holds_alternative<Penalty>(method)) continue;  // (as in the plane)
+    const auto solve = [&](bool itself) {
+      Scene plane = clasp(itself, Geometry::b_spline);
+      plane.legs[0] = {0.1, 16};
+      return run(extruded(plane), method);
+    };
+    const auto named = solve(false), itself = solve(true);
+    ASSERT_TRUE(is_converged(named.trajectory.status)) << name_of(method) << named.trajectory.message;
+    ASSERT_TRUE(is_converged(itself.trajectory.status)) << name_of(method) << itself.trajectory.message;
+    ASSERT_EQ(named.trajectory.increments.size(), itself.trajectory.increments.size());
+    EXPECT_GT(named.value("press"), 0.1) << "the ends meet";
+    for (const auto& r : named.model.scene.responses) {
+      EXPECT_NEAR(itself.value(r.name), named.value(r.name), 1e-9 * std::abs(named.value(r.name))) << r.name;
+      for (const auto& p : named.model.scene.parameters) {
+        const double scale =
+            std::max(std::abs(named.derivative(r.name, p.name)), std::abs(named.value(r.name) / p.value));
+        EXPECT_NEAR(itself.derivative(r.name, p.name), named.derivative(r.name, p.name), 1e-8 * scale)
+            << name_of(method) << " " << r.name << " by " << p.name;
+      }
+    }
+  }
+}
+
+TEST(SelfContact, InSpaceHasTheDerivativesOfTheWholeRun) {
+  Scene plane = clasp(true, Geometry::b_spline);
+  plane.legs = {{0.1, 8}, {1, 2}, {2, 2}};
+  std::erase_if(plane.parameters, [](const Parameter& p) { return p.name == "p" || p.name == "inner"; });
+  expect_derivatives_of_the_oracle(extruded(plane), MonolithicAL{});
 }
 
 TEST(SelfContact, HasTheDerivativesOfTheWholeRun) {
