@@ -3,12 +3,16 @@
 ///   [ S + C_uu  C_ul ]
 ///   [ C_lu      C_ll ]      S: the bodies on their contact dofs (engine/condensation.hpp); C: of the points
 ///
-/// Rows of the multipliers of open points hold nothing but these, and are left out of the factor. Vectors u are over
-/// the contact dofs (NodalLayout::compact), l over the multipliers.
+/// Rows of the multipliers of open points hold nothing but these, and are left out of the factor. In a large system
+/// what single points determine is eliminated before it is factorised (engine/point_elimination.hpp). Vectors u are
+/// over the contact dofs (NodalLayout::compact), l over the multipliers.
 #pragma once
+
+#include <optional>
 
 #include "core/algebra/dense_factor.hpp"
 #include "core/algebra/symmetric_modes.hpp"
+#include "core/engine/point_elimination.hpp"
 #include "core/engine/point_system.hpp"
 
 namespace stickslip {
@@ -50,10 +54,14 @@ class DenseSystem : public PointSystem<T> {
   std::string name() const override { return "condensed, dense " + factor_name(); }
   long nonzeros() const override { return static_cast<long>(this->unknowns()) * this->unknowns(); }
   void add_to_report(EngineReport& report) const override {
+    report.unsymmetric = kind_.symmetry == Symmetry::general;
+    report.factor = factor_.bytes();
     report.matrix_entries = report.factor_entries = static_cast<long>(matrix_.size());
     report.matrix = static_cast<long>(matrix_.size() * sizeof(T));
-    report.factor = factor_.bytes();
-    report.unsymmetric = kind_.symmetry == Symmetry::general;
+    if (!points_) return;
+    report.matrix_entries = points_->entries();
+    report.matrix = points_->bytes();
+    report.factor_entries = report.factor / static_cast<long>(sizeof(T));
   }
 
  private:
@@ -64,19 +72,25 @@ class DenseSystem : public PointSystem<T> {
   void take_multipliers();
   void put_bodies(Matrix<T>& K) const;
   void add_points(const std::vector<PointTangent<T>>& tangents, Multipliers multipliers, Matrix<T>& K) const;
-  Matrix<T> solve_factor(const Matrix<T>& b, Taken taken) override { return factor_.solve(b, taken); }
+  std::optional<PointElimination<T>> eliminated() const;
+  Matrix<T> solve_factor(const Matrix<T>& b, Taken taken) override {
+    const auto with_factor = [&](const Matrix<T>& rows) { return factor_.solve(rows, taken); };
+    return points_ ? points_->solve(b, taken, with_factor) : with_factor(b);
+  }
   Matrix<T> multiply(const Matrix<T>& x, Taken taken) const override {
+    if (points_) return points_->times(x, taken);
     return taken == Taken::transposed ? Matrix<T>(matrix_.transpose() * x) : Matrix<T>(matrix_ * x);
   }
-  int determinant_sign() const override { return factor_.determinant_sign(); }
+  int determinant_sign() const override { return factor_.determinant_sign() * (points_ ? points_->sign() : 1); }
   bool leaves_out(const PointTangent<T>& tangent) const override {
     return kind_.has_unknown_multipliers() && tangent.row_w.cwiseAbs().maxCoeff() == 0;
   }
 
   const Matrix<T>& stiffness_;
-  std::vector<char> free_;   ///< per contact dof
-  Vector<T> open_diagonal_;  ///< of the multiplier rows that are not in the factor
-  Matrix<T> matrix_;         ///< the one that is factorised
+  std::vector<char> free_;                     ///< per contact dof
+  Vector<T> open_diagonal_;                    ///< of the multiplier rows that are not in the factor
+  Matrix<T> matrix_;                           ///< the one that is factorised; empty where points are eliminated
+  std::optional<PointElimination<T>> points_;  ///< what was eliminated of points; none in a small system
   DenseFactor<T> factor_;
 };
 
@@ -150,9 +164,57 @@ std::optional<int> DenseSystem<T>::motions_unresisted(const std::vector<PointTan
   return std::nullopt;
 }
 
+/// The system with what single points determine eliminated; none if no point can be.
+template <class T>
+std::optional<PointElimination<T>> DenseSystem<T>::eliminated() const {
+  const auto free = static_cast<Eigen::Index>(displacements_.size());
+  Matrix<T> K(free, free);
+  put_bodies(K);
+  this->for_each_hold([&](int row, const T& x) { K(row, row) += x; });
+  std::vector<Eigen::Triplet<T>> border;
+  std::vector<typename PointElimination<T>::Point> points;
+  std::vector<int> touching(free, 0);  // per displacement: how many points
+  for (std::size_t p = 0; p < made_.tangents.size(); ++p) {
+    if (leaves_out(made_.tangents[p])) continue;
+    const auto& places = this->places_of(p, made_.tangents[p]);
+    const auto rows = this->rows_of(p, places);
+    this->for_each_entry_of(p, made_.tangents[p], kind_.multipliers, [&](int i, int j, const T& x) {
+      if (rows[i] < 0 || rows[j] < 0) return;
+      if (rows[i] < free && rows[j] < free)
+        K(rows[i], rows[j]) += x;
+      else
+        border.emplace_back(rows[i], rows[j], x);
+    });
+    auto& point = points.emplace_back();
+    const int slave = model_.points[p].places[0];
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (rows[k] >= free) point.multipliers.push_back(rows[k]);
+      if (rows[k] < 0 || rows[k] >= free) continue;
+      ++touching[rows[k]];
+      if (places[k / model_.dimension] == slave) point.slave.push_back(rows[k]);
+    }
+  }
+  for (auto& point : points) std::erase_if(point.slave, [&](int row) { return touching[row] > 1; });
+  typename PointElimination<T>::Sparse sparse(this->size(), this->size());
+  sparse.setFromTriplets(border.begin(), border.end());
+  PointElimination<T> elimination(std::move(K), std::move(sparse), points);
+  if (elimination.is_empty()) return std::nullopt;
+  return elimination;
+}
+
 template <class T>
 bool DenseSystem<T>::make_factor(Counters& counters) {
   take_multipliers();
+  points_.reset();
+  if (kind_.has_unknown_multipliers() && this->size() >= large_dense_system) points_ = eliminated();
+  if (points_) {
+    matrix_.resize(0, 0);
+    const bool is_symmetric = kind_.symmetry == Symmetry::indefinite && points_->keeps_symmetry();
+    const Symmetry symmetry = is_symmetric ? Symmetry::positive_definite : Symmetry::general;
+    const bool valid = factor_.factorise(points_->reduced(), symmetry, counters.factorizations);
+    points_->let_reduced_go();
+    return valid;
+  }
   Matrix<T>& K = matrix_;
   K = Matrix<T>::Zero(this->size(), this->size());
   put_bodies(K);

@@ -1,9 +1,11 @@
 #include "core/engine/engine_price.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/engine/body_rows.hpp"
+#include "core/engine/point_elimination.hpp"
 
 namespace stickslip {
 namespace {
@@ -77,6 +79,13 @@ FactorSize bodies_factor(const Model& model) {
   return predict_factor(rows.pattern, static_cast<int>(rows.contact.size()));
 }
 
+bool factorises_multipliers(const Model& model, Multipliers multipliers) {
+  if (multipliers != Multipliers::unknown) return false;
+  const auto rows = static_cast<Eigen::Index>(model.contact_nodes.size()) * model.dimension + model.multiplier_count;
+  return rows < large_dense_system ||
+         std::any_of(model.points.begin(), model.points.end(), [](const auto& point) { return point.is_integrated(); });
+}
+
 EnginePrice predict_price(const Model& model, Multipliers multipliers, Symmetry symmetry, const FactorSize& factor) {
   if (!model.effects.linear_bulk) return price_of_changing(model, multipliers, symmetry, factor);
   const double sparse_kind = kind_of(symmetry);
@@ -94,7 +103,7 @@ EnginePrice predict_price(const Model& model, Multipliers multipliers, Symmetry 
   price.sparse = setting_up * factor.flops + linearisations * sparse_kind * free_ordering * factor.flops +
                  sparse_kind * solve * (solves * of_solve + increments * derivatives * of_block_solve);
   const double rows = static_cast<double>(model.contact_nodes.size()) * model.dimension +
-                      (multipliers == Multipliers::unknown ? model.multiplier_count : 0);
+                      (factorises_multipliers(model, multipliers) ? model.multiplier_count : 0);
   const double dense = dense_kind * rows * rows * rows / 3;
   const double differentiated = derivatives > 0 ? increments : 0;  // each with a tangent of its own
   price.condensed = (setting_up + 1) * factor.flops + (linearisations + differentiated) * of_dense * dense +

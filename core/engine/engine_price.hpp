@@ -23,6 +23,10 @@ FactorSize bodies_factor(const Model& model);
 /// of the bodies.
 EnginePrice predict_price(const Model& model, Multipliers multipliers, Symmetry symmetry, const FactorSize& factor);
 
+/// Whether the dense system of bodies that are condensed once leaves multipliers to a factor (PointElimination): it is
+/// small, or its points are integrated and share their nodes.
+bool factorises_multipliers(const Model& model, Multipliers multipliers);
+
 /// Whether each tangent of bodies that change is to be condensed: `bodies`: their factor with the contact dofs last;
 /// `dense_rows`: of what is left; `symmetry`: of the whole tangent.
 bool prefers_condensed_tangents(const FactorSize& bodies, int dense_rows, Symmetry symmetry);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/algebra/reverse.hpp"
+#include "core/engine/engine_price.hpp"
 #include "core/model/response.hpp"
 #include "core/model/storage.hpp"
 #include "methods/stepping/checkpoints.hpp"
@@ -236,6 +237,7 @@ struct Factors {
   Amount tangent_entries;                             ///< of the sparse matrix
   double point_entries = 0;                           ///< of the blocks of the contact points
   Amount bodies{"bodies_factor"}, tangent{"factor"};  ///< `tangent`: what a symmetric one has
+  Amount left{"factor"};                              ///< of the dense system of bodies that are condensed once
   Amount stored{"factor_entries"};
   double dense = 0;           ///< entries of the dense system of tangents that are condensed
   Amount schur{"condensed"};  ///< of the bodies on the contact dofs
@@ -254,7 +256,12 @@ Factors condensed_factors(const Model& model, const Size& n) {
   const double rows = n.solved + multipliers(n);
   // multipliers of open points are left out
   const double within = n.solved > 0 ? std::pow(rows / n.solved, 2) : not_known;
-  out.tangent = {"factor", real_bytes * rows * rows, within};
+  out.tangent = out.left = {"factor", real_bytes * rows * rows, within};
+  if (n.unknown && !factorises_multipliers(model, Multipliers::unknown)) {
+    constexpr double of_border = 1.5;
+    out.tangent = {"factor", real_bytes * n.solved * n.solved, of_border};
+    out.left = {"factor", out.tangent.value, not_known};  // (the fewer points slide, the less is left)
+  }
   if (n.free > n.solved) out.bodies = {"bodies_factor", real_bytes * bodies_factor(model).entries, of_library(n.free)};
   out.schur = {"condensed", real_bytes * n.condensed_dofs * n.condensed_dofs};
   return out;
@@ -304,9 +311,11 @@ LedgerRow condensed_row(const Size& n, const Factors& factors) {
   const bool on = n.condensed || n.mixed || factors.schur.value > 0;
   LedgerRow row{"condensed_engine", on, {{"eliminated", 0}}, {}, {}, n.condensed ? not_apart : 0};
   const double unknown = n.condensed ? not_known : exactly;
-  Amount matrix = n.condensed ? factors.tangent : Amount{}, factor = matrix, entries = matrix, stored = matrix;
+  Amount matrix = n.condensed ? factors.tangent : Amount{}, factor = n.condensed ? factors.left : Amount{};
+  Amount entries = matrix, stored = factor;
   matrix.name = "matrix", factor.name = "factor", entries.name = "matrix_entries", stored.name = "factor_entries";
-  entries.value = stored.value = matrix.value / real_bytes;
+  entries.value = matrix.value / real_bytes;
+  stored.value = factor.value / real_bytes;
   row.unknowns[0].value = n.free - n.solved;
   row.memory = {
       factors.schur, on ? factors.bodies : Amount{"bodies_factor"}, matrix, factor, {"iterations", 0, unknown}};
