@@ -152,6 +152,7 @@ void draw_bodies(const Scene& scene, const json& obstacles, double scale, const 
   draw_elements(scene.mesh, nodes, frame, scene.peak, with_mesh, drawing);
   draw_flowed(scene.mesh, nodes, frame, drawing);
   draw_outlines(scene.mesh, nodes, frame, drawing);
+  draw_wires(obstacles, scale, frame, drawing);
 }
 
 /// Whether a close-up has room beside the whole in half the width of a page.

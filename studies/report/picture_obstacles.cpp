@@ -66,7 +66,25 @@ void hatch(const Path& shape, Drawing& drawing) {
   drawing.unclip();
 }
 
+void add_line(const json& vertices, const Motion& motion, const Frame& frame, Path& path) {
+  bool is_first = true;
+  for (const auto& vertex : vertices) {
+    if (!is_point(vertex)) continue;
+    const Point p = motion.place(to_point(vertex));
+    std::exchange(is_first, false) ? path.move(frame.x(p.x), frame.y(p.y)) : path.line(frame.x(p.x), frame.y(p.y));
+  }
+}
+
 }  // namespace
+
+void draw_wires(const json& obstacles, double scale, const Frame& frame, Drawing& drawing) {
+  Path wires;
+  for (const auto& obstacle : obstacles) {
+    const json& wire = at(obstacle, "wire");
+    if (wire.is_object()) add_line(array_at(wire, "points"), Motion(at(wire, "moved"), scale), frame, wires);
+  }
+  if (!wires.empty()) drawing.path(std::move(wires), {"soft", "", 0.8, {}});
+}
 
 void draw_obstacles(const json& obstacles, double scale, const Frame& frame, Drawing& drawing) {
   const Style edge{"ink", "", 1.2, {}};
@@ -86,11 +104,7 @@ void draw_obstacles(const json& obstacles, double scale, const Frame& frame, Dra
       solid = at(data, "inside") != true;
     } else if (kind == "polyline") {
       solid = false;
-      for (const auto& vertex : data.is_array() ? data : array_at(data, "points")) {
-        if (!is_point(vertex)) continue;
-        const Point p = motion.place(to_point(vertex));
-        shape.empty() ? shape.move(frame.x(p.x), frame.y(p.y)) : shape.line(frame.x(p.x), frame.y(p.y));
-      }
+      add_line(data.is_array() ? data : array_at(data, "points"), motion, frame, shape);
     }
     if (shape.empty()) continue;
     if (solid) hatch(shape, drawing);

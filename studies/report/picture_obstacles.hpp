@@ -12,4 +12,8 @@ namespace stickslip::report {
 /// solids are hatched.
 void draw_obstacles(const nlohmann::json& obstacles, double scale, const Frame& frame, Drawing& drawing);
 
+/// Lines on obstacles in space, likewise. They are drawn over the bodies: who looks at the sides in contact has the
+/// obstacle before these.
+void draw_wires(const nlohmann::json& obstacles, double scale, const Frame& frame, Drawing& drawing);
+
 }  // namespace stickslip::report

@@ -21,17 +21,42 @@ struct Pair {
   std::string words() const { return force + " against " + against; }
 };
 
+bool is_force(const json& kinds, const std::string& response) {
+  const json& kind = at(kinds, response.c_str());
+  return kind == "reaction" || kind == "contact_force";
+}
+
 /// What kind each response is of, as picture.json has it.
 std::vector<Pair> pairs_of(const json& kinds) {
   std::vector<std::string> forces, ways;
   for (const auto& [name, kind] : kinds.items()) {
-    if (kind == "reaction" || kind == "contact_force") forces.push_back(name);
+    if (is_force(kinds, name)) forces.push_back(name);
     if (kind == "displacement" || kind == "slip") ways.push_back(name);
   }
   std::vector<Pair> out;
   for (const auto& way : ways)
     for (const auto& force : forces) out.push_back({force, way});
   return out;
+}
+
+/// The histories without forces that are rounding beside the largest one.
+std::vector<History> without_rounding(std::vector<History> runs, const json& kinds) {
+  constexpr double rounding = 1e-9;
+  std::map<std::string, double> largest;
+  double most = 0;
+  for (const auto& run : runs)
+    for (const auto& [name, values] : run.values)
+      for (const double value : values)
+        if (is_force(kinds, name) && std::isfinite(value)) {
+          largest[name] = std::max(largest[name], std::abs(value));
+          most = std::max(most, std::abs(value));
+        }
+  for (auto& run : runs)
+    std::erase_if(run.values, [&](const auto& of) {
+      const auto found = largest.find(of.first);
+      return found != largest.end() && found->second <= rounding * most;
+    });
+  return runs;
 }
 
 /// From the least to the largest value; 0 where that is rounding.
@@ -181,7 +206,8 @@ std::optional<Figure> response_histories(const Study& study) {
   figure.id = "response-histories";
   auto shown = telling_cells(study, Furthest::added);
   add_first(series, study, shown);
-  auto pairs = pairs_of(object_at(study.picture, "responses"));
+  const json& kinds = object_at(study.picture, "responses");
+  auto pairs = pairs_of(kinds);
   std::vector<History> told;  // of the runs that are shown at first
   double end = 0;
   for (const bool telling : {true, false})
@@ -216,8 +242,9 @@ std::optional<Figure> response_histories(const Study& study) {
   const bool has_path = !distinct(figure.rows, "path", "path").empty();
   figure.title =
       has_path ? "Histories: responses over time, and forces along displacements" : "Histories: responses over time";
-  const Pair first = first_pair(pairs, told);
-  const std::string response = first_over_time(first, told);
+  const auto clear = without_rounding(told, kinds);
+  const Pair first = first_pair(pairs, clear);
+  const std::string response = first_over_time(first, clear);
   figure.text = in_words(told, first, response, has_path);
   if (has_path)
     figure.charts.push_back({.title = "force along displacement",

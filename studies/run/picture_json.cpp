@@ -1,12 +1,14 @@
 #include "studies/run/picture_json.hpp"
 
 #include "core/model/element_nodes.hpp"
+#include "core/model/positions.hpp"
 #include "methods/stepping/checkpoints.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/input/response_kinds.hpp"
 #include "studies/run/contact_points.hpp"
 #include "studies/run/element_fields.hpp"
 #include "studies/run/fields.hpp"
+#include "studies/run/obstacle_wires.hpp"
 #include "studies/run/view.hpp"
 
 namespace stickslip {
@@ -51,6 +53,20 @@ struct Shown {
     return point_json(x);
   }
 };
+
+/// Adds the lines of an obstacle in space. Where it only shifts at small strain, by how
+/// much, so that it is enlarged as the bodies are.
+void add_wires(const Problem& problem, const Obstacle& obstacle, double time, const Shown& shown, json& out) {
+  const bool shifts = !problem.model.scene.finite_strain && !obstacle.rotate;
+  const auto frame = detail::frame_of_obstacle<3>(obstacle, time, problem.slots.numbers);
+  for (const auto& wire : wires_of(obstacle, problem.slots.numbers, problem.slots.points)) {
+    json points = json::array();
+    for (const Vec<double, 3>& X : wire)
+      points.push_back(shown.seen(shifts ? X : Vec<double, 3>(X + frame.displacement(X))));
+    out.push_back({{"wire", {{"points", points}}}});
+    if (shifts) out.back()["wire"]["moved"] = {{"by", shown.seen(frame.displacement(wire[0]))}};
+  }
+}
 
 /// Nodes of all bodies, what moved and stresses them, and their elements by nodes; of solid bodies their faces.
 json bodies_json(const Problem& problem, const State<double>& state, const Shown& shown) {
@@ -140,7 +156,10 @@ json picture_json(const CaseResult& result, int every) {
   const auto obstacles_at = [&](double t) {
     json out = json::array();
     for (const auto& obstacle : scene.obstacles)
-      if (!view) out.push_back(obstacle_json(obstacle, t, scene.finite_strain, problem.slots.numbers));
+      if (view)
+        add_wires(problem, obstacle, t, shown, out);
+      else
+        out.push_back(obstacle_json(obstacle, t, scene.finite_strain, problem.slots.numbers));
     return out;
   };
   picture["obstacles"] = obstacles_at(time);

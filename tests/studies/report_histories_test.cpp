@@ -94,6 +94,16 @@ TEST_F(ReportHistories, WithoutALoopBeginWithTheForceThatChangesAndSpeakOfNoMemo
   EXPECT_THAT(report::response_histories(study())->text, HasSubstr("friction's memory"));
 }
 
+TEST_F(ReportHistories, DoNotBeginWithAForceThatIsRoundingBesideAnother) {
+  json steps = json::array();
+  for (int n = 1; n <= 10; ++n)
+    steps.push_back({{"time", n},
+                     {"responses", {{"grip", n % 2 == 0 ? 6e-14 : -2e-14}, {"press", 300 + n}}},
+                     {"history", json::array()}});
+  record_steps(steps);
+  EXPECT_THAT(choice(*report::response_histories(study()), "response")->chosen, testing::ElementsAre("press"));
+}
+
 TEST_F(ReportHistories, SpeakOfMemoryOnlyWhereAPathClosesAboveRounding) {
   json open_path = json::array();
   for (int n = 1; n <= 10; ++n)  // bent, and never back where it was

@@ -100,6 +100,24 @@ TEST(ReportPicture, EnlargesTheMotionOfObstaclesAsThatOfBodies) {
   EXPECT_EQ(report::draw_overview(small)->drawing.inline_svg(), report::draw_overview(larger)->drawing.inline_svg());
 }
 
+TEST(ReportPicture, DrawsLinesOnObstaclesInSpaceOverTheBodies) {
+  const auto svg = [](const json& obstacles) {
+    json drawn = picture();
+    drawn["aslant"] = true;
+    drawn["obstacles"] = obstacles;
+    return report::draw_picture(drawn)->drawing.inline_svg();
+  };
+  const json wire = {{"points", {{0, 0}, {0.5, 0.25}}}},
+             moved = {{"points", {{0, 0}, {0.5, 0.25}}}, {"moved", {{"by", {0, 0.1}}}}};
+  const std::string without = svg(json::array()), with = svg({{{"wire", wire}}});
+  ASSERT_GT(with.size(), without.size());
+  EXPECT_NE(svg({{{"wire", moved}}}), with);
+  EXPECT_EQ(svg({{{"wire", wire}}, {{"wire", {{"points", "none"}}}}}), with);  // what is no line is left out
+  const auto line = with.find("stroke:var(--soft);stroke-width:0.8");
+  ASSERT_NE(line, std::string::npos) << with;
+  EXPECT_GT(line, with.rfind("stroke-width:0.3"));  // of the last face
+}
+
 TEST(ReportPicture, ShowsAPointWithItsSpringInThePlaneAndInSpace) {
   json point = {{"points", {{0, 0}, {0, 0}}},  // a slider: the point has lagged behind its anchor
                 {"displacement", {{0.07, 0}, {0.1, 0}}},

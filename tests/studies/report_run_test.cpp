@@ -259,6 +259,41 @@ TEST_F(ReportOfARun, WithoutASolutionShowsTheLastStepThatHasOneUnderABanner) {
                     HasSubstr("id=\"overview\"")));
 }
 
+TEST_F(ReportOfARun, InSpaceDrawsLinesOnItsObstacles) {
+  const auto picture_of = [](const char* strain) {
+    json scene = json::parse(R"({
+      "space": "solid",
+      "bodies": {"block": {"mesh": {"box": {"min": [0, 0, 0], "max": [1, 1, 1], "cells": [1, 1, 1]}},
+                           "material": {"neo_hookean": {"E": 1000, "nu": 0.3}}}},
+      "obstacles": {"floor": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}},
+                    "ball": {"sphere": {"center": [0.5, 0.5, 2], "radius": 1}, "move": {"z": [[0, 0], [1, -0.01]]}},
+                    "drum": {"cylinder": {"point": [3, 0, 0.5], "axis": [0, 1, 0], "radius": 2}}},
+      "contacts": {"sole": {"slave": "block.bottom", "master": "floor"}, "top": {"slave": "block.top", "master": "ball"},
+                   "side": {"slave": "block.right", "master": "drum"}},
+      "supports": [{"on": "block.left", "move": {"x": 0}}, {"on": "block.front", "move": {"y": 0}}],
+      "time": {"end": 1, "steps": 1}, "method": {"monolithic_al": {}}})");
+    scene["strain"] = strain;
+    if (scene["strain"] == "small")
+      scene["bodies"]["block"]["material"] = {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}};
+    return picture_json(cases::run(scene, {{"monolithic_al", json::object()}}, "space.json"));
+  };
+  const json small = picture_of("small")["obstacles"], finite = picture_of("finite")["obstacles"];
+  std::map<std::size_t, int> lines;  // by their points
+  for (const auto& obstacle : small) ++lines[obstacle["wire"]["points"].size()];
+  EXPECT_EQ(lines,
+            (std::map<std::size_t, int>{{2, 18 + 16}, {49, 11 + 5}}));  // of the plane, the drum; of both round ones
+  ASSERT_EQ(finite.size(), small.size());
+  int moved = 0;
+  for (std::size_t i = 0; i < small.size(); ++i) {
+    const json by = small[i]["wire"]["moved"]["by"], from = small[i]["wire"]["points"][0],
+               to = finite[i]["wire"]["points"][0];
+    moved += by != json({0.0, 0.0});
+    EXPECT_FALSE(finite[i]["wire"].contains("moved")) << "drawn where it is";
+    for (int k : {0, 1}) EXPECT_NEAR(to[k], from[k].get<double>() + by[k].get<double>(), 1e-12) << i;
+  }
+  EXPECT_EQ(moved, 11) << "the ball";
+}
+
 TEST_F(ReportOfARun, ThatIsInaccurateSaysNotToUseItsValues) {
   const auto document = cases::load(cases::shipped / "stop.json");
   const std::string file = cases::shipped / "stop.json";
