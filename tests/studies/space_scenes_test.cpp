@@ -1,5 +1,5 @@
-/// Closed forms of contact in space: A9 (Hertz), A10 and A24 (Cattaneo, Mindlin), A23 (twist of a contact), A27 (spin
-/// of a square), and the press fit that is twisted.
+/// Closed forms of contact in space: A9 and A22 (Hertz), A10 and A24 (Cattaneo, Mindlin), A23 (twist of a contact), A27
+/// (spin of a square), and the press fit that is twisted.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -93,6 +93,42 @@ TEST(SphereOnABlock, HasHertzsPressureAndDerivatives) {
   // without friction all forces grow as E: to the accuracy of the solution, a thousandth of its tolerance
   EXPECT_NEAR(derivative(result, "P", "E"), response(result, "P") / 1000, 1e-9 * P / 1000);
   EXPECT_NEAR(derivative(result, "p0", "E"), response(result, "p0") / 1000, 1e-9 * p0 / 1000);
+}
+
+/// A22: two curvatures, as of a ball of radius 20 on a cylinder of radius 20, which are those of a rigid paraboloid of
+/// 20 and 10. Contact is an ellipse.
+TEST(BallOnACylinder, IsPressedInHertzsEllipse) {
+  json scene = {
+      {"space", "solid"},
+      {"bodies",
+       {{"ball",
+         {{"mesh", {{"half_ball", {{"center", {0, 0, 20}}, {"radius", 20}, {"cells", {14, 10}}, {"grade", 70}}}}},
+          {"material", {{"linear_elastic", {{"E", 1000}, {"nu", 0.3}}}}}}}}},
+      {"obstacles", {{"drum", {{"cylinder", {{"point", {0, 0, -20}}, {"axis", {1, 0, 0}}, {"radius", 20}}}}}}},
+      {"contacts", {{"touch", {{"slave", "ball.surface"}, {"master", "drum"}}}}},
+      {"supports", {{{"on", "ball.flat"}, {"move", {{"x", 0}, {"y", 0}, {"z", -0.09}}}}}},
+      {"time", {{"end", 1}, {"steps", 1}}},
+      {"responses",
+       {{"P", {{"contact_force", {{"contact", "touch"}, {"component", "normal"}}}}},
+        {"p0", {{"contact_pressure", {{"contact", "touch"}, {"at", {0, 0, 0}}}}}}}}};
+  const auto result = run(scene);
+  ASSERT_TRUE(is_converged(result.status())) << result.message();
+  const double size = std::cbrt(response(result, "P") / 100);  // lengths and pressures grow with the cube root
+  EXPECT_NEAR(response(result, "p0"), 49.53552424 * size, 0.02 * 49.53552424 * size);
+  // Nodes are closed inside of the ellipse and open beyond it, but for half an element.
+  const Vec<double, 2> axes = Vec<double, 2>(1.2363368344, 0.7796286933) * size;  // along the drum, and around it
+  const auto& model = result.problem->model;
+  double reach = 0, beyond = 1e9;
+  for (std::size_t p = 0; p < model.points.size(); ++p) {
+    const Vec<double, 3> X = result.problem->slots.points.col(model.points[p].nodes[0]);
+    const double off = std::hypot(X[0] / axes[0], X[1] / axes[1]);  // 1: on the ellipse
+    if (result.steps.back().increment->state.contact.state[p] == ContactState::open)
+      beyond = std::min(beyond, off);
+    else
+      reach = larger(reach, off);
+  }
+  EXPECT_LT(reach, 1.15);  // (of a circle of the same area one axis would be 1.26)
+  EXPECT_GT(beyond, 0.85);
 }
 
 /// Mindlin's displacement of the ball beside the plane, of a press P and a shear that rose to `most` and is Q now.

@@ -104,7 +104,7 @@ double relative_error(const MatrixXd& x, const MatrixXd& exact) { return (x - ex
 
 /// Forward error to expect of a backward stable solve: condition number times rounding, times 100 for growth and size.
 double tolerance_for(const MatrixXd& a) {
-  const Eigen::BDCSVD<MatrixXd> svd(a);
+  const Eigen::JacobiSVD<MatrixXd, Eigen::NoQRPreconditioner> svd(a);  // (a is square)
   const auto& s = svd.singularValues();
   return 100 * std::numeric_limits<double>::epsilon() * s[0] / s[s.size() - 1];
 }

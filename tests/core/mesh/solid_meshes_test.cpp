@@ -2,13 +2,13 @@
 /// element, fit together, and have sides that face outward.
 #include <gtest/gtest.h>
 
-#include <complex>
 #include <map>
 #include <set>
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/quality.hpp"
 #include "core/mesh/sides.hpp"
+#include "tests/support/mesh_derivatives.hpp"
 #include "tests/support/volumes.hpp"
 
 namespace stickslip::solid_meshes_test {
@@ -141,7 +141,6 @@ TEST(SolidMeshes, OfQuadraticElementsHaveTheirMiddlesOnCurvedSides) {
 }
 
 TEST(SolidMeshes, OfQuadraticElementsHaveExactDerivatives) {
-  using Complex = std::complex<double>;
   HalfBallMesh ball;
   ball.center = {Number(0.1), Number(-0.2), Number(1.0)};
   ball.radius = Number(1.5, 0);
@@ -152,13 +151,7 @@ TEST(SolidMeshes, OfQuadraticElementsHaveExactDerivatives) {
   ring.outer = 2.0;
   ring.cells = {2, 8};
   for (const MeshDescription& description : {MeshDescription(ball), MeshDescription(ExtrudedMesh{ring, 0.0, 1.0, 2})})
-    for (const char* element : {"T10", "H20", "H27"}) {
-      const Mesh mesh = make_mesh(description, element, 3);
-      const auto dual = make_points<Dual<1>>(description, mesh, {{Dual<1>::seed(1.5, 0)}});
-      const auto oracle = make_points<Complex>(description, mesh, {{Complex(1.5, 1e-30)}});
-      for (Eigen::Index k = 0; k < dual.size(); ++k)
-        EXPECT_NEAR(dual.data()[k].d[0], oracle.data()[k].imag() / 1e-30, 1e-13) << element;  // of size one
-    }
+    for (const char* element : {"T10", "H20", "H27"}) expect_exact_derivatives(description, element, 3, {1.5});
 }
 
 TEST(SolidMeshes, OfAQuadraticElementTurnedInsideOutAreFound) {
