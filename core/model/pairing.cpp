@@ -155,11 +155,11 @@ class OwnVertices {
  public:
   /// Both must outlive this. `places`: initial positions of the vertices.
   OwnVertices(const MasterSurface& side, const Places<D>& places) : side_(side), places_(places) {
-    for (std::size_t v = 0; v < side.nodes.size(); ++v) vertex_of_[side.nodes[v]] = static_cast<int>(v);
     if constexpr (D == 3) faces_.emplace(places, corners_of(side.patches<3>()));
   }
   OwnVertex at(int node, const Vec<double, D>& outward, double mesh_size) const {
-    const int vertex = vertex_of_.at(node);
+    const auto found = std::find(side_.nodes.begin(), side_.nodes.end(), node);
+    const int vertex = static_cast<int>(found - side_.nodes.begin());
     if constexpr (D == 2)
       return own_vertex(side_.patches<2>(), places_, vertex, outward, mesh_size);
     else
@@ -176,8 +176,7 @@ class OwnVertices {
  private:
   const MasterSurface& side_;
   const Places<D>& places_;
-  std::map<int, int> vertex_of_;  ///< by node
-  std::optional<FaceSearch> faces_;
+  std::optional<FaceSearch> faces_;  ///< in space
 };
 
 /// What a slave node faces of a surface at the start. Sets what it may face, if the surface is its own side; in space

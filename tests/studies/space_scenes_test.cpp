@@ -123,7 +123,7 @@ TEST(BallOnACylinder, IsPressedInHertzsEllipse) {
     const Vec<double, 3> X = result.problem->slots.points.col(model.points[p].nodes[0]);
     const double off = std::hypot(X[0] / axes[0], X[1] / axes[1]);  // 1: on the ellipse
     if (result.steps.back().increment->state.contact.state[p] == ContactState::open)
-      beyond = std::min(beyond, off);
+      beyond = smaller(beyond, off);
     else
       reach = larger(reach, off);
   }
