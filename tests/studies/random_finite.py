@@ -301,27 +301,7 @@ def pile(draw):
             "press_on": "upper.top"}
 
 
-def clasp(draw):
-    """A slit ring of space, which a pressure from all around closes until its ends touch and rub: its boundary touches
-    itself."""
-    inner, thickness, half_slit = draw.uniform(0.8, 1.2), draw.uniform(0.3, 0.6), draw.uniform(8, 25)
-    ring = {"ring": {"center": [0, 0], "inner": inner, "outer": inner + thickness, "from_angle": half_slit,
-                     "to_angle": 360 - half_slit, "cells": [draw.whole(1, 3), draw.whole(12, 24)]}}
-    body = {"mesh": {"extruded": {"mesh": ring, "from": 0, "to": draw.uniform(0.3, 1), "cells": draw.whole(1, 3)}},
-            "material": {"neo_hookean": {"E": 100, "nu": draw.uniform(0.1, 0.45)}},
-            "element": draw.choice(["H8", "H8_mean_dilatation", "T4"])}
-    still = {"z": 0} if draw.choice([True, False]) else {"x": 0, "y": 0, "z": 0}
-    return {"space": "solid", "bodies": {"clasp": body},
-            "contacts": {"self": dict(slave="clasp.boundary", master="clasp.boundary", **draw.friction())},
-            "supports": [{"on": "clasp.start", "move": {"x": 0, "y": 0}}, {"on": "clasp.front - clasp.end", "move": {"z": 0}},
-                         {"on": "clasp.start & clasp.back", "move": still}],
-            "loads": [{"on": "clasp.outer", "pressure": draw.uniform(4, 16) * thickness ** 2, "history": [[0, 0], [1, 1]]},
-                      {"on": "clasp.end", "traction": [draw.uniform(-1, 1), 0, draw.uniform(-0.5, 0.5)],
-                       "history": [[0, 0], [1, 0], [2, 1]]}], "press_on": None}
-
-
-CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, slide, ironing, stack, rings, disks, tube, solid, pile,
-                                   clasp)}
+CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, slide, ironing, stack, rings, disks, tube, solid, pile)}
 
 
 def scene_of(kind, number, surface):
