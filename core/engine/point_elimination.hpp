@@ -42,7 +42,7 @@ class PointElimination {
   /// other multipliers than its own act on the slave node of each.
   PointElimination(Matrix<T> displacements, Sparse border, const std::vector<Point>& points);
 
-  /// Whether as many points were left as there were.
+  /// Whether no point was eliminated.
   bool is_empty() const { return multipliers_.size() == 0; }
   /// Whether the reduced system is symmetric where the system is.
   bool keeps_symmetry() const { return rows_.numbers == columns_.numbers; }

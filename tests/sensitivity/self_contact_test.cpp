@@ -282,6 +282,47 @@ TEST(SelfContact, InSpaceHasTheDerivativesOfTheWholeRun) {
   expect_derivatives_of_the_oracle(extruded(plane), MonolithicAL{});
 }
 
+/// A ring in space at small strain with a thin slit, which a traction closes.
+Scene slit_ring(bool itself) {
+  Scene s;
+  s.space = Space::solid;
+  s.legs = {{1, 2}};
+  RingMesh ring;
+  ring.center = {0.0, 0.0};
+  ring.inner = 1.0;
+  ring.outer = 1.5;
+  ring.from_angle = 0.3;
+  ring.to_angle = 359.7;
+  ring.cells = {3, 16};
+  s.bodies = {{"ring", ExtrudedMesh{ring, 0.0, 0.5, 1}, LinearElastic{parameter(s, "E", 100), 0.3}, "", 1.0}};
+  s.contacts = {itself ? scenes::contact("ends", "ring.boundary", "ring.boundary")
+                       : scenes::contact("ends", "ring.end", "ring.start")};
+  s.contacts[0].friction = parameter(s, "mu", 0.2);
+  s.supports = {scenes::support("ring.start", {{'x', table({{0, 0.0}})}, {'y', table({{0, 0.0}})}}),
+                scenes::support("ring.front", {{'z', table({{0, 0.0}})}})};
+  Load closing = scenes::traction("ring.end", {0.02, parameter(s, "p", 0.2), 0.0});
+  closing.history = table({{0, 0.0}, {1, 1.0}});
+  s.loads = {closing};
+  s.responses = {response("press", Kind::contact_force, "ends", "normal"),
+                 response("drag", Kind::contact_force, "ends", "x")};
+  return s;
+}
+
+TEST(SelfContact, InSpaceAtSmallStrainHasTheForcesOfTheTwoSidesAndTheDerivativesOfTheRun) {
+  for (const Method& method : finite_methods()) {
+    const auto named = run(slit_ring(false), method), itself = run(slit_ring(true), method);
+    ASSERT_TRUE(is_converged(named.trajectory.status)) << name_of(method) << named.trajectory.message;
+    ASSERT_TRUE(is_converged(itself.trajectory.status)) << name_of(method) << itself.trajectory.message;
+    EXPECT_GT(named.value("press"), 0.04) << "the ends meet";
+    // Nodes at the rim of an end have the normal of all faces there that face the other end, which is another mean.
+    // (Forces are those on the slave, which may be the other end.)
+    for (const char* force : {"press", "drag"})
+      EXPECT_NEAR(std::abs(itself.value(force)), std::abs(named.value(force)), 0.02 * std::abs(named.value(force)))
+          << force;
+  }
+  expect_derivatives_of_the_oracle(slit_ring(true), MonolithicAL{});
+}
+
 TEST(SelfContact, HasTheDerivativesOfTheWholeRun) {
   // a thin ring: the rounding of its matrix, some 1.7e-11, is more than 1e-11
   const auto check = [](Scene scene, const Method& method) {

@@ -114,6 +114,7 @@ TEST(BallOnACylinder, IsPressedInHertzsEllipse) {
   const auto result = run(scene);
   ASSERT_TRUE(is_converged(result.status())) << result.message();
   const double size = std::cbrt(response(result, "P") / 100);  // lengths and pressures grow with the cube root
+  // of the mesh, six elements wide along the ellipse: 1.05 % too large
   EXPECT_NEAR(response(result, "p0"), 49.53552424 * size, 0.02 * 49.53552424 * size);
   // Nodes are closed inside of the ellipse and open beyond it, but for half an element.
   const Vec<double, 2> axes = Vec<double, 2>(1.2363368344, 0.7796286933) * size;  // along the drum, and around it
