@@ -32,6 +32,14 @@
 ///
 /// tau and tau_m run along the two facets as they are now. G and E are linear along the slave facet.
 ///
+/// Relief, at finite strain: if less than s_0 = 0.1 of the whole area of a node faces the master, its gap is
+///
+///   g_j + h(s)      h(s) = 0.01 l (s_0 / s - 1)^2      s = A_j / (whole area)      l = int psi_j dS over whole facets
+///
+/// Why: g_j does not fade as s does. A node that an end of the master leaves would bear its force to the last, and lose
+/// it at once. Then the end is beside it again, so that neither is an equilibrium. h rounds the end off, as the end
+/// relief of a roller does (core/README.md, Past a free end).
+///
 /// A side of a quadratic element is two facets, each from one of its nodes to the next. The element moves along
 ///
 ///   x(s) = (1 - s) x_a + s x_b + s (1 - s) d      d = x_middle - (x_start + x_end) / 2
@@ -207,6 +215,17 @@ T area_of_facets(const std::vector<Segment>& facets, InitialPosition&& initial_p
   const auto position = [&](int node) { return at_start<T>(initial_position(node)); };
   const auto here = [](const auto&...) { return detail::Foot<T>{Vec<T, 2>(T(0), T(0)), Vec<T, 2>(T(0), T(1))}; };
   return integrate_segments<T, T>(facets, nodes, position, depth, here, [](auto&&...) {}).area;
+}
+
+/// s_0 of the relief (above).
+inline constexpr double relieved_share = 0.1;
+
+/// h of the relief (above), length. `share`: s, between 0 and s_0; `length`: l.
+template <class U, class T>
+U end_relief(const U& share, const T& length) {
+  constexpr double height = 0.01;
+  const U lacking = U(relieved_share) / share - U(1);
+  return U(T(height) * length) * lacking * lacking;
 }
 
 /// Distance of a slave node from a free end of the master, initial length, positive outside, at which 2 least_share of

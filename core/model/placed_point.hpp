@@ -56,6 +56,13 @@ T whole_area(const ContactPoint& point, const Slots<T>& slots) {
       point.segments, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
 }
 
+/// Initial length of what a segment-integrated point weighs: its whole area at unit depth.
+template <class T>
+T length_of_facets(const ContactPoint& point, const Slots<T>& slots) {
+  return area_of_facets<T>(
+      point.segments, [&](int node) { return point2(slots.points, node); }, Depth<T>{});
+}
+
 /// Turns normal, tangents and foot motion from the frame of the obstacle into the axes.
 template <class U, class T, int D>
 void turn_with(const Frame<T, D>& frame, PlacedPoint<U, D>& at) {

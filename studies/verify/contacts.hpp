@@ -249,11 +249,16 @@ class Contact {
   Touch on_pieces(int node, const Field& x) const {
     Touch touch{{true}, node};
     touch.normal.setZero();
-    double share = 0, whole = 0;  // lengths
+    double share = 0, whole = 0, whole_area = 0;  // the first two lengths
     for (const auto& facet : facets_) {
       if (!carries(node, facet)) continue;
       const bool is_shared = carries(facet.ends[0], facet) && carries(facet.ends[1], facet);
       whole += facet.chord(scene_.points).norm() / (is_shared ? 2 : 1);
+      for (const auto& point : gauss_points("L3")) {
+        const double s = point.at[0], psi = !is_shared ? 1 : node == facet.ends[1] ? s : 1 - s;
+        whole_area += psi * point.weight * facet.at(scene_.points, s, 1).norm() *
+                      scene_.depth(body_, facet.at(scene_.points, s)[0]);
+      }
       for (const auto& piece : cut(facet, x)) {
         if (touch.faced < 0) touch.faced = piece.patch;
         share += integrate(facet, piece, node, x, touch);
@@ -263,6 +268,8 @@ class Contact {
     if (share <= (along_curve ? 0.01 : 1e-12) * whole) return {master_.nearest(seeker(node, x)), node};
     touch.normal = (along_curve ? right_of(touch.tangent) : touch.normal).normalized();
     touch.gap = touch.relative.dot(touch.normal) / touch.area;
+    if (const double faces = touch.area / whole_area; along_curve && faces < 0.1)  // its end is rounded off
+      touch.gap += 0.01 * whole * (0.1 / faces - 1) * (0.1 / faces - 1);
     touch.y /= touch.area;
     touch.tangent /= touch.area;
     touch.along /= touch.area;

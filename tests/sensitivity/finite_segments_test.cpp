@@ -204,6 +204,44 @@ TEST(FiniteSegments, ForcesBalanceBetweenSlaveAndMaster) {
     }
 }
 
+/// A block of two facets, pressed onto a table that ends under the second one.
+Scene block_over_an_end(double end, double mu) {
+  Scene s = empty({{1, 1}});
+  s.bodies = {rubber_body(scenes::box_body("block", {0, 0}, {1, 0.5}, {2, 1}), s, "E", 100)};
+  s.obstacles = {{"table", Polyline{{{-1.0, 0.0}, {parameter(s, "end", end), 0.0}}}}};
+  s.contacts = {joint(s, "block.bottom", "table", mu)};
+  s.supports = {scenes::support("block.top", {{'x', still}, {'y', table({{0, 0.0}, {1, -0.02}})}})};
+  s.responses = {response("N", Kind::contact_force, "joint", "normal")};
+  return s;
+}
+
+TEST(FiniteSegments, TheForceOnANodeFadesAsAnEndLeavesIt) {
+  // Where the force changes most between two ends, halved until they are 1e-5 of a facet apart. A jump would stay; it
+  // was 6 % of the force. (Without friction, so that it does not depend on the path.)
+  for (const Method& method : finite_methods()) {
+    const auto force = [&](double end) {
+      const auto s = run(block_over_an_end(end, 0), method);
+      EXPECT_TRUE(is_converged(s.trajectory.status)) << end << name_of(method) << s.trajectory.message;
+      return s.value("N");
+    };
+    double low = 0.51, at_low = force(low), width = 0.01, most = 0;
+    for (double end = 0.51; end < 0.75; end += width)
+      if (const double N = force(end + width), change = N - force(end); change > most) {
+        most = change;
+        low = end;
+        at_low = N - change;
+      }
+    for (; width > 5e-6; width /= 2) {
+      const double middle = force(low + width / 2), high = force(low + width);
+      if (high - middle > middle - at_low) {
+        low += width / 2;
+        at_low = middle;
+      }
+    }
+    EXPECT_LE(force(low + width) - at_low, 1e-3 * at_low) << name_of(method) << low;
+  }
+}
+
 TEST(FiniteSegments, FrictionWorkAndStrainEnergyAddUpToTheWorkDone) {
   // 24 steps lose 0.1 % by their length, and 4 facets a second-order share of the work of the normal force
   for (const double mu : {0.0, 0.3}) {
@@ -303,6 +341,8 @@ TEST(FiniteSegments, DerivativesEqualTheComplexStepAndTheAdjoint) {
     scenes::expect_derivatives_in_both_modes(ironing_segments(bent), method);
   scenes::expect_derivatives_in_both_modes(ironing_segments({0}), MonolithicAL{});
   scenes::expect_derivatives_in_both_modes(ironing_segments({0.3, 0, 2.7}), MonolithicAL{});
+  for (const double end : {0.62, 0.65})  // (a node of which a twentieth faces the table, and nearly a tenth)
+    scenes::expect_derivatives_in_both_modes(block_over_an_end(end, 0.3), MonolithicAL{});
   for (const Space space : {Space::axisymmetric, Space::plane_stress}) {
     Scene blocks = stacked_segments(0.8, 0.2, 3, 4, space);
     blocks.responses.resize(2);  // (the gap is rounding)

@@ -301,7 +301,43 @@ def pile(draw):
             "press_on": "upper.top"}
 
 
-CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, slide, ironing, stack, rings, disks, tube, solid, pile)}
+def drag(draw):
+    """A block of space, or a half ball, on a slab, whichever of them is the slave: pressed, dragged, past edges too."""
+    width, depth, beyond = draw.uniform(0.8, 2), draw.uniform(0.8, 2), draw.uniform(0.2, 0.8)
+    elements = ("H8", "H8_mean_dilatation", "T4", "T10", "H20", "H27")
+    if draw.choice([True, False]):
+        height = draw.uniform(0.5, 1.2)
+        upper = draw.body({"box": {"min": [0, 0, 0], "max": [width, depth, height],
+                                   "cells": [draw.whole(2, 5), draw.whole(2, 5), draw.whole(1, 3)]}}, elements=elements)
+        sole, held = "upper.bottom", "upper.top"
+    else:
+        height = width / 2
+        upper = draw.body({"half_ball": {"center": [height, depth / 2, height], "radius": height,
+                                         "cells": 2 * [draw.whole(2, 4)]}},
+                          elements=("H8", "H8_mean_dilatation"), soft=0.3)
+        sole, held = "upper.surface", "upper.flat"
+    thick = draw.uniform(0.4, 1)
+    slab = draw.body({"box": {"min": [-beyond, -beyond, -thick], "max": [width + beyond, depth + beyond, 0],
+                              "cells": [draw.whole(3, 8), draw.whole(3, 8), draw.whole(1, 3)]}}, elements=elements)
+    for body in (upper, slab):
+        if "j2_plastic" in body["material"]:
+            body["element"] = "H8_mean_dilatation"
+    sides = draw.choice([[sole, "slab.top"], ["slab.top", sole]])
+    way = draw.uniform(0.1, 0.9) * beyond
+    turn = draw.uniform(0, 2 * math.pi)
+    support = {"on": held, "move": {"x": draw.there_and_back(way * math.cos(turn)),
+                                    "y": draw.there_and_back(way * math.sin(turn)),
+                                    "z": [[0, 0], [1, -draw.uniform(0.02, 0.1) * min(height, thick)]]}}
+    if draw.choice([True, False]):
+        support["rotate"] = {"center": [width / 2, depth / 2, height], "axis": [0, 0, 1],
+                             "angle": draw.there_and_back(draw.uniform(-10, 10))}
+    return {"space": "solid", "bodies": {"upper": upper, "slab": slab},
+            "contacts": {"c": dict(slave=sides[0], master=sides[1], **draw.friction())},
+            "supports": [{"on": "slab.bottom", "move": {"x": 0, "y": 0, "z": 0}}, support], "press_on": held}
+
+
+CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, slide, ironing, stack, rings, disks, tube, solid, pile,
+                                   drag)}
 
 
 def scene_of(kind, number, surface):
