@@ -94,7 +94,8 @@ class Faces {
     return {{p, at[0], at[1]}, y.col(0), normal, normal.dot(off), off.norm()};
   }
 
-  /// Where x - y is across y in the directions D of (s, t): Newton's method; none where it does not end.
+  /// Where x - y is across y in the directions D of (s, t): Newton's method; none where it does not end, or ends past
+  /// an edge by more than the patch is wide.
   std::optional<Vec2> across(int p, Vec2 at, const Eigen::Matrix2Xd& D, const Vec3& x) const {
     constexpr double h = 1e-4;  // of central differences, whose errors of 1e-8 slow down the last steps alone
     for (int k = 0; k < 50 && at.cwiseAbs().maxCoeff() < 3; ++k) {
@@ -107,7 +108,8 @@ class Faces {
       const Eigen::LLT<Eigen::MatrixXd> exact(metric - bend / (2 * h)), safe(metric);
       const Vec2 step = D * (exact.info() == Eigen::Success ? exact : safe).solve(slope.transpose() * off);
       at += step * std::min(1.0, 0.5 / step.norm());
-      if (step.norm() < 1e-14) return at;
+      const bool is_near = at.minCoeff() >= -1 && at.maxCoeff() <= 2;
+      if (step.norm() < 1e-14) return is_near ? std::optional(at) : std::nullopt;
     }
     return std::nullopt;
   }
