@@ -45,11 +45,14 @@ void report_mesh_fault(const JsonNode& mesh, const std::string& fault) {
 bool fits(const JsonNode& node, const MeshDescription& description, const std::string& element, SceneReading& reading) {
   const double nodes = estimated_nodes(description, element);
   reading.nodes += nodes;
-  const double limit = memory_limit(), bytes = estimated_bytes({reading.dimension() * reading.nodes});
+  const bool in_space = reading.dimension() == 3;
+  const double limit = memory_limit(),
+               bytes = estimated_bytes({.displacements = reading.dimension() * reading.nodes, .in_space = in_space});
   if (bytes <= limit) return true;
   std::string message = "makes " + shown(std::round(nodes)) + " nodes, which need " + too_much(bytes, limit);
   if (reading.nodes > nodes) message = message + " (with the bodies before it)";
-  message = message + "; try fewer cells, half of them each way need about a quarter";
+  message =
+      message + "; try fewer cells, half of them each way need " + (in_space ? "less than a tenth" : "about a quarter");
   for (const auto& [kind, generator] : node.members())
     if (const auto cells = generator.value().is_object() ? generator.find("cells") : std::nullopt) {
       cells->error("is " + shown(cells->value()) + ", which " + message);

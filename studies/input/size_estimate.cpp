@@ -50,15 +50,32 @@ double estimated_nodes(const MeshDescription& mesh, const std::string& element) 
       mesh);
 }
 
-double estimated_bytes(const ProblemSize& size) {
-  // Measured with boxes of Q4: 2.7 kB a displacement at 80 000 of them, of which the factor's entries are 12 bytes
-  // each; these grow by 8 a displacement with each doubling (docs/decisions.md, "Libraries of linear algebra").
+namespace {
+
+/// Of boxes of Q4: 2.7 kB a displacement at 80 000 of them, of which the factor's entries are 12 bytes each; these grow
+/// by 8 a displacement with each doubling (docs/decisions.md, "Libraries of linear algebra").
+double bytes_of_plane_bodies(double n) {
   constexpr double measured_at = 20'600, least_entries = 63, entries_a_doubling = 8, bytes_an_entry = 12;
-  const double n = size.displacements;
   const double doublings = std::log2(std::max(n / measured_at, 1.0));
-  double bytes = n * (1800 + bytes_an_entry * (least_entries + entries_a_doubling * doublings));
-  // Dense matrices over the contact dofs: measured 14 of them at 1600 and at 2000 dofs.
-  if (size.condensed) bytes += 14 * 8 * size.contact_dofs * size.contact_dofs;
+  return n * (1800 + bytes_an_entry * (least_entries + entries_a_doubling * doublings));
+}
+
+/// Of boxes and half balls of H8, 3000 to 100 000 displacements (docs/decisions.md, "Memory in space"). A factor has
+/// 800 entries a displacement at 25 600 of them, and grows as their power 1.47.
+double bytes_of_solid_bodies(const ProblemSize& size) {
+  constexpr double measured_at = 25'600, entries = 800, growth = 0.47;
+  const double factors = size.reduced != Reduced::nothing || !size.unsymmetric ? 1 : size.slides ? 4 : 2;
+  return size.displacements * (2800 + factors * 8 * entries * std::pow(size.displacements / measured_at, growth));
+}
+
+}  // namespace
+
+double estimated_bytes(const ProblemSize& size) {
+  const double n = size.displacements;
+  double bytes = size.in_space ? bytes_of_solid_bodies(size) : bytes_of_plane_bodies(n);
+  // Dense matrices over the contact dofs: measured 14 of them at 1600 and at 2000 dofs; of tangents 6 to 8.
+  const double matrices = size.reduced == Reduced::bodies ? 14 : size.reduced == Reduced::tangents ? 7 : 0;
+  bytes += matrices * 8 * size.contact_dofs * size.contact_dofs;
   // what a step leaves: displacements, contact points, iterations, its part of the result (11 kB of a single point)
   return bytes + (size.steps - size.thin_steps) * 8 * n + size.steps * (150 * size.contact_points + 11'000);
 }

@@ -7,14 +7,20 @@
 
 namespace stickslip {
 
+/// What is reduced to the contact dofs: nothing; bodies, once; or the tangent of each iteration.
+enum class Reduced { nothing, bodies, tangents };
+
 /// What decides how much a run needs.
 struct ProblemSize {
   double displacements = 0;
   double contact_dofs = 0;  ///< displacements of the nodes of sides in contact
   double contact_points = 0;
   double steps = 0;
-  bool condensed = false;  ///< bodies condensed to the contact dofs
-  double thin_steps = 0;   ///< of these, whose displacements are let go
+  Reduced reduced = Reduced::nothing;
+  double thin_steps = 0;     ///< of these, whose displacements are let go
+  bool in_space = false;     ///< of solid bodies
+  bool unsymmetric = false;  ///< the tangent
+  bool slides = false;       ///< contact in present geometry
 };
 
 /// Nodes of a mesh that a generator makes, within a few per cent; of an imported one those it has.

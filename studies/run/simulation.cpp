@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <tuple>
 
 #include "methods/stepping/checkpoints.hpp"
@@ -15,10 +16,27 @@ namespace stickslip {
 namespace {
 
 /// What the bodies and their contact need, by sparse matrices.
-ProblemSize size_without_steps(const Model& model) {
-  return {static_cast<double>(model.free_dofs.size()),
-          static_cast<double>(model.contact_nodes.size()) * model.dimension, static_cast<double>(model.points.size()),
-          0, false};
+SystemKind kind_of(const Model& model, const Input& input) {
+  return system_kind(model, multipliers_of(input.method), cone_radius_of(input.method), input.backend);
+}
+
+ProblemSize size_without_steps(const Model& model, const Input& input) {
+  return {.displacements = static_cast<double>(model.free_dofs.size()),
+          .contact_dofs = static_cast<double>(model.contact_nodes.size()) * model.dimension,
+          .contact_points = static_cast<double>(model.points.size()),
+          .in_space = model.dimension == 3 && !model.bodies.empty(),
+          .unsymmetric = kind_of(model, input).symmetry == Symmetry::general,
+          .slides = model.effects.current_geometry};
+}
+
+/// What the engine of the run reduces; to find out takes an analysis.
+Reduced reduced_by(const Problem& problem, const Input& input) {
+  const auto engine = input.linear_algebra.engine;
+  if (condenses(problem.model, input.method, engine)) return Reduced::bodies;
+  FullBodies<double> bodies(problem.model, problem.slots);
+  const auto tangent =
+      make_condensed_tangent(problem.model, problem.slots, kind_of(problem.model, input), engine, bodies);
+  return tangent ? Reduced::tangents : Reduced::nothing;
 }
 
 void add_steps(const Model& model, const Input& input, ProblemSize& size) {
@@ -71,9 +89,9 @@ std::optional<Simulation> prepare(const std::string& file, const Overrides& over
 }
 
 double needed_bytes(const Problem& problem, const Input& input) {
-  ProblemSize size = size_without_steps(problem.model);
+  ProblemSize size = size_without_steps(problem.model, input);
   add_steps(problem.model, input, size);
-  size.condensed = condenses(problem.model, input.method, input.linear_algebra.engine);
+  size.reduced = reduced_by(problem, input);
   return estimated_bytes(size);
 }
 
@@ -82,20 +100,32 @@ void check_memory(const Problem& problem, const Input& input) {
   const auto& model = problem.model;
   const Engine engine = input.linear_algebra.engine;
   const double limit = memory_limit();
-  ProblemSize size = size_without_steps(model);
-  if (estimated_bytes(size) > limit)
-    throw ModelError("the bodies need " + too_much(estimated_bytes(size), limit) + "; try fewer cells", "/bodies");
-  size.condensed = true;  // or so: to find out takes an analysis, which is made where it matters
-  bool is_known = false;
+  ProblemSize size = size_without_steps(model, input);
+  const auto refuse_bodies = [&](const ProblemSize& needs) {
+    throw ModelError("the bodies need " + too_much(estimated_bytes(needs), limit) + "; try fewer cells", "/bodies");
+  };
+  ProblemSize least = size;
+  least.unsymmetric = false;
+  if (estimated_bytes(least) > limit) refuse_bodies(least);
+  std::optional<Reduced> known;
   const auto is_too_much = [&] {
-    if (estimated_bytes(size) > limit && !std::exchange(is_known, true))
-      size.condensed = condenses(model, input.method, engine);
+    if (!known) {  // the analysis is made where it matters
+      const auto fits = [&](Reduced reduced) {
+        size.reduced = reduced;
+        return estimated_bytes(size) <= limit;
+      };
+      if (fits(Reduced::nothing) && fits(Reduced::bodies)) return false;
+      known = reduced_by(problem, input);
+    }
+    size.reduced = *known;
     return estimated_bytes(size) > limit;
   };
-  if (is_too_much())
+  if (is_too_much()) {
+    if (size.reduced == Reduced::nothing) refuse_bodies(size);
     throw ModelError("the bodies, condensed to " + shown(size.contact_dofs) + " contact dofs, need " +
                          too_much(estimated_bytes(size), limit) + R"(; try {"engine": "sparse"}, or fewer cells)",
                      engine == Engine::condensed ? "/linear_solver/engine" : "/linear_solver");
+  }
   add_steps(model, input, size);
   if (is_too_much())
     throw ModelError("its " + shown(size.steps) + " steps need " + too_much(estimated_bytes(size), limit) +

@@ -25,26 +25,53 @@ TEST(SizeEstimate, CountsNodesBeforeTheyAreMade) {
   for (const char* element : {"H27", "T10"}) EXPECT_NEAR(estimated_nodes(block, element), doubled, 0.05 * doubled);
 }
 
-/// Peaks that runs of a box on a floor had (MB, displacements, contact dofs, condensed).
+/// The peak of a run, MB, and its size.
+struct Measured {
+  double megabytes;
+  ProblemSize size;
+};
+
+void expect_within_a_factor_of_two(const Measured& run) {
+  EXPECT_LT(estimated_bytes(run.size), 2e6 * run.megabytes) << run.size.displacements;
+  EXPECT_GT(estimated_bytes(run.size), 0.5e6 * run.megabytes) << run.size.displacements;
+}
+
+/// Of a box on a floor.
 TEST(SizeEstimate, IsWithinAFactorOfTwoOfWhatRunsTook) {
-  struct Run {
-    double megabytes, displacements, contact_dofs;
-    bool condensed;
-  };
-  for (const auto& run : {Run{59, 20'200, 202, false},
-                          {216, 80'400, 402, false},
-                          {104, 40'040, 2002, false},
-                          {140, 80'400, 402, true},
-                          {421, 80'100, 1602, true},
-                          {537, 40'040, 2002, true}}) {
-    const double estimate =
-        estimated_bytes({run.displacements, run.contact_dofs, run.contact_dofs / 2, 1, run.condensed});
-    EXPECT_LT(estimate, 2e6 * run.megabytes) << run.displacements;
-    EXPECT_GT(estimate, 0.5e6 * run.megabytes) << run.displacements;
-  }
+  constexpr Reduced bodies = Reduced::bodies, nothing = Reduced::nothing;
+  for (const auto& run : {Measured{59, {20'200, 202, 101, 1, nothing}},
+                          {216, {80'400, 402, 201, 1, nothing}},
+                          {104, {40'040, 2002, 1001, 1, nothing}},
+                          {140, {80'400, 402, 201, 1, bodies}},
+                          {421, {80'100, 1602, 801, 1, bodies}},
+                          {537, {40'040, 2002, 1001, 1, bodies}}})
+    expect_within_a_factor_of_two(run);
   // 9000 steps of one point took 93 MB more than 300
-  const double longer = estimated_bytes({2, 2, 1, 9000, false}) - estimated_bytes({2, 2, 1, 300, false});
+  const double longer = estimated_bytes({2, 2, 1, 9000}) - estimated_bytes({2, 2, 1, 300});
   EXPECT_NEAR(longer, 93e6, 0.5 * 93e6);
+}
+
+/// Of a half ball on a slab, of rubber, and of a block on a floor, with friction but for the last.
+TEST(SizeEstimate, IsWithinAFactorOfTwoInSpace) {
+  const auto rubber = [](double n, double contact, Reduced reduced) {
+    return ProblemSize{n, contact, contact / 9, 2, reduced, 0, true, true, true};
+  };
+  const auto block = [](double n, double contact, Reduced reduced, bool has_friction) {
+    return ProblemSize{n, contact, contact / 3, 3, reduced, 0, true, has_friction, false};
+  };
+  constexpr Reduced nothing = Reduced::nothing, bodies = Reduced::bodies, tangents = Reduced::tangents;
+  for (const auto& run : {Measured{343, rubber(11'448, 2028, tangents)},
+                          {949, rubber(25'584, 3414, tangents)},
+                          {4335, rubber(84'744, 7602, tangents)},
+                          {287, rubber(11'448, 2028, nothing)},
+                          {762, rubber(25'584, 3414, nothing)},
+                          {447, block(22'500, 1875, bodies, true)},
+                          {1315, block(52'272, 3267, bodies, true)},
+                          {352, block(22'500, 1875, nothing, true)},
+                          {998, block(52'272, 3267, nothing, true)},
+                          {199, block(22'500, 1875, nothing, false)},
+                          {1180, block(100'860, 5043, nothing, false)}})
+    expect_within_a_factor_of_two(run);
 }
 
 TEST(SizeEstimate, OfMillionsOfNodesIsBeyondASmallMachine) {
