@@ -43,10 +43,6 @@ struct Size {
   Condensed what() const { return condensed ? Condensed::all : mixed ? Condensed::part : Condensed::nothing; }
 };
 
-SystemKind kind_of(const Input& input, const Model& model) {
-  return system_kind(model, multipliers_of(input.method), cone_radius_of(input.method), input.backend);
-}
-
 Size size_of(const Input& input, const Model& model) {
   Size n{};
   const bool condenses_some = condenses(model, input.method, input.linear_algebra.engine);

@@ -16,16 +16,12 @@ namespace stickslip {
 namespace {
 
 /// What the bodies and their contact need, by sparse matrices.
-SystemKind kind_of(const Model& model, const Input& input) {
-  return system_kind(model, multipliers_of(input.method), cone_radius_of(input.method), input.backend);
-}
-
 ProblemSize size_without_steps(const Model& model, const Input& input) {
   return {.displacements = static_cast<double>(model.free_dofs.size()),
           .contact_dofs = static_cast<double>(model.contact_nodes.size()) * model.dimension,
           .contact_points = static_cast<double>(model.points.size()),
           .in_space = model.dimension == 3 && !model.bodies.empty(),
-          .unsymmetric = kind_of(model, input).symmetry == Symmetry::general,
+          .unsymmetric = kind_of(input, model).symmetry == Symmetry::general,
           .slides = model.effects.current_geometry};
 }
 
@@ -35,7 +31,7 @@ Reduced reduced_by(const Problem& problem, const Input& input) {
   if (condenses(problem.model, input.method, engine)) return Reduced::bodies;
   FullBodies<double> bodies(problem.model, problem.slots);
   const auto tangent =
-      make_condensed_tangent(problem.model, problem.slots, kind_of(problem.model, input), engine, bodies);
+      make_condensed_tangent(problem.model, problem.slots, kind_of(input, problem.model), engine, bodies);
   return tangent ? Reduced::tangents : Reduced::nothing;
 }
 
@@ -86,6 +82,10 @@ std::optional<Simulation> prepare(const std::string& file, const Overrides& over
                                   const std::optional<std::string>& method, Diagnostics& diagnostics) {
   const auto document = JsonDocument::read(file, diagnostics);
   return document ? prepare(*document, overrides, method, diagnostics) : std::nullopt;
+}
+
+SystemKind kind_of(const Input& input, const Model& model) {
+  return system_kind(model, multipliers_of(input.method), cone_radius_of(input.method), input.backend);
 }
 
 double needed_bytes(const Problem& problem, const Input& input) {

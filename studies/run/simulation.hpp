@@ -31,6 +31,9 @@ std::optional<Simulation> prepare(const JsonDocument& document, const Overrides&
 std::optional<Simulation> prepare(const std::string& file, const Overrides& overrides,
                                   const std::optional<std::string>& method, Diagnostics& diagnostics);
 
+/// What is factorised where the run is not condensed.
+SystemKind kind_of(const Input& input, const Model& model);
+
 /// Bytes that a run needs, as estimated before it (studies/input/size_estimate.hpp).
 double needed_bytes(const Problem& problem, const Input& input);
 

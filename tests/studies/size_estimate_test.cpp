@@ -51,7 +51,7 @@ TEST(SizeEstimate, IsWithinAFactorOfTwoOfWhatRunsTook) {
   EXPECT_NEAR(longer, 93e6, 0.5 * 93e6);
 }
 
-/// Of a half ball on a slab, of rubber, and of a block on a floor, with friction but for the last.
+/// Of a half ball on a slab, of rubber, and of a block on a floor, with friction but for the last two.
 TEST(SizeEstimate, IsWithinAFactorOfTwoInSpace) {
   const auto rubber = [](double n, double contact, Reduced reduced) {
     return ProblemSize{n, contact, contact / 9, 2, reduced, 0, true, true, true};
