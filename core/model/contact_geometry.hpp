@@ -38,7 +38,7 @@ PlacedPoint<U, D> on_obstacle(const Positions<U, T, Displacement>& positions, co
     }
   turn_with<U, T>(frame, at);
   at.geometry.gap += U(offset_of(point, model, slots));
-  at.geometry.area = U(earlier.start ? earlier.start->area : whole_area(point, slots));
+  at.geometry.area = U(whole_area(point, earlier, slots));
   return at;
 }
 
@@ -60,7 +60,7 @@ PlacedPoint<U, D> off_master(const Positions<U, T, Displacement>& positions, con
   PlacedPoint<U, D> at;
   at.faces_master = false;
   at.geometry = alone<U>(U(facing.distance), normal, point.slave_nodes);
-  at.geometry.area = U(earlier.start ? earlier.start->area : whole_area(point, positions.slots));
+  at.geometry.area = U(whole_area(point, earlier, positions.slots));
   if (point.foot < 0 || facing.nearest == no_patch) return at;
   place_beside(positions, point, facing.nearest, at);
   return at;

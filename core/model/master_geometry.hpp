@@ -89,7 +89,7 @@ PlacedPoint<U, D> on_master(const Positions<U, T, Displacement>& positions, cons
   at.geometry.normal = foot.normal;
   at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
   at.geometry.weights = foot_weights(foot, master.is_rigid());
-  at.geometry.area = U(earlier.start ? earlier.start->area : whole_area(point, positions.slots));
+  at.geometry.area = U(whole_area(point, earlier, positions.slots));
   if (point.foot < 0) return at;
   if (earlier.patch != no_patch) {
     const auto last = stored_place<D>(model, point, earlier.patch, earlier.foot);

@@ -56,6 +56,12 @@ T whole_area(const ContactPoint& point, const Slots<T>& slots) {
       point.segments, [&](int node) { return point2(slots.points, node); }, slots.depths[point.slave_body]);
 }
 
+/// The same, from the initial geometry where it is known.
+template <class T>
+T whole_area(const ContactPoint& point, const Earlier<T>& earlier, const Slots<T>& slots) {
+  return earlier.start ? earlier.start->area : whole_area(point, slots);
+}
+
 /// Initial length of what a segment-integrated point weighs: its whole area at unit depth.
 template <class T>
 T length_of_facets(const ContactPoint& point, const Slots<T>& slots) {

@@ -123,7 +123,7 @@ PlacedPoint<U, 2> on_segments(const Positions<U, T, Displacement>& positions, co
   turn_with<U, T>(frame, at);
   at.geometry.gap += number(model.scene.contacts[point.contact].offset);
   if (along_curve && model.effects.current_geometry) {
-    const U share = at.geometry.area / U(earlier.start ? earlier.start->area : whole_area(point, slots));
+    const U share = at.geometry.area / U(whole_area(point, earlier, slots));
     if (value(share) < relieved_share) at.geometry.gap += end_relief<U, T>(share, length_of_facets(point, slots));
   }
   return at;
