@@ -4,6 +4,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS(Direction);
+STICKSLIP_ELEMENTS(, Direction);
 
 }  // namespace stickslip

@@ -16,11 +16,15 @@
 #include <utility>
 
 #include "core/algebra/reverse.hpp"
+#include "core/model/contact_assembly.hpp"
 #include "core/model/objective.hpp"
 #include "methods/method.hpp"
 #include "sensitivity/tangent.hpp"
 
 namespace stickslip {
+
+STICKSLIP_SLOTS(extern, Reverse);  // compiled in reverse_elements.cpp
+STICKSLIP_CONTACT(extern, Reverse);
 
 /// Derivatives of an objective by what the next increment reads of a state.
 struct HistoryDerivative {

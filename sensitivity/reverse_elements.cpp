@@ -6,7 +6,7 @@
 namespace stickslip {
 
 STICKSLIP_SLOTS(, Reverse);
-STICKSLIP_ELEMENTS(Reverse);
+STICKSLIP_ELEMENTS(, Reverse);
 STICKSLIP_CONTACT(, Reverse);
 
 }  // namespace stickslip

@@ -232,4 +232,6 @@ BlockVector<T> DenseSystem<T>::solve(const BlockVector<T>& rows, Solving how) {
   return out;
 }
 
+extern template class DenseSystem<double>;
+
 }  // namespace stickslip

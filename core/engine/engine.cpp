@@ -5,6 +5,10 @@
 
 namespace stickslip {
 
+template class FullBodies<double>;
+template class PointElimination<double>;
+template class SparseSystem<double>;
+template class DenseSystem<double>;
 template class CondensedTangent<double>;
 STICKSLIP_ENGINES(, double);
 

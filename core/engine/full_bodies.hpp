@@ -175,4 +175,6 @@ std::vector<T> FullBodies<T>::tangent_of(const BodyMatrix<T>& matrix, BodyKind k
   return values;
 }
 
+extern template class FullBodies<double>;
+
 }  // namespace stickslip

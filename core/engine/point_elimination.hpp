@@ -322,4 +322,6 @@ Matrix<T> PointElimination<T>::solve_transposed(const Matrix<T>& b, Solve& solve
   return x;
 }
 
+extern template class PointElimination<double>;
+
 }  // namespace stickslip

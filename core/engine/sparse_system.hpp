@@ -228,4 +228,6 @@ void SparseSystem<T>::add_to_report(EngineReport& report) const {
   report.factor_entries = solver_.factor_nonzeros();
 }
 
+extern template class SparseSystem<double>;
+
 }  // namespace stickslip

@@ -61,19 +61,23 @@ const ElementKernels<T>& kernels_of(const Model& model, int b) {
   return *kernels;
 }
 
-/// All tables in a scalar: of one shape, and of every one, in one source each.
-#define STICKSLIP_ELEMENTS_OF(T, ...) template const ElementKernels<T>& kernels_of_shape<T, __VA_ARGS__>()
-#define STICKSLIP_ELEMENTS(T)            \
-  STICKSLIP_ELEMENTS_OF(T, TwoNodes<2>); \
-  STICKSLIP_ELEMENTS_OF(T, TwoNodes<3>); \
-  STICKSLIP_ELEMENTS_OF(T, Tri3);        \
-  STICKSLIP_ELEMENTS_OF(T, Quad4);       \
-  STICKSLIP_ELEMENTS_OF(T, Tri6);        \
-  STICKSLIP_ELEMENTS_OF(T, Quad8);       \
-  STICKSLIP_ELEMENTS_OF(T, Tet4);        \
-  STICKSLIP_ELEMENTS_OF(T, Hex8);        \
-  STICKSLIP_ELEMENTS_OF(T, Tet10);       \
-  STICKSLIP_ELEMENTS_OF(T, Hex20);       \
-  STICKSLIP_ELEMENTS_OF(T, Hex27)
+/// All tables in a scalar, and those of one shape: as STICKSLIP_SLOTS. Without the declaration, a source that is joined
+/// to one that defines them compiles all of them again.
+#define STICKSLIP_ELEMENTS_OF(EXTERN, T, ...) \
+  EXTERN template const ElementKernels<T>& kernels_of_shape<T, __VA_ARGS__>()
+#define STICKSLIP_ELEMENTS(EXTERN, T)            \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, TwoNodes<2>); \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, TwoNodes<3>); \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, Tri3);        \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, Quad4);       \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, Tri6);        \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, Quad8);       \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, Tet4);        \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, Hex8);        \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, Tet10);       \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, Hex20);       \
+  STICKSLIP_ELEMENTS_OF(EXTERN, T, Hex27)
+
+STICKSLIP_ELEMENTS(extern, double);
 
 }  // namespace stickslip

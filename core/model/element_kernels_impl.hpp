@@ -114,7 +114,7 @@ struct ContinuumKernels {
   }
 
   static void tangents(const Elements& elements, const BodyMotion<T>* at, const ElementSink<T>& sink) {
-    constexpr bool solves = std::is_same_v<T, double> || std::is_same_v<T, std::complex<double>>;
+    constexpr bool solves = std::is_same_v<T, double>;
     std::vector<int> all;
     for_each(elements, [&]<Kinematics kinematics, class L>(const L& law, int e, const int* nodes, const Places& X) {
       all.assign(nodes, nodes + Shape::nodes);

@@ -123,7 +123,7 @@ template <class T>
 using ElementSink = std::function<void(const std::vector<int>& nodes, const Eigen::Ref<const Matrix<T>>& K)>;
 
 /// Calls sink(nodes, K) for each element of body b, or for those in `only`. `at`: motion at which the tangent is taken,
-/// with its plastic flow (pre: T is double or complex); nullptr: tangent of the start, for bodies of constant tangent.
+/// with its plastic flow (pre: T is double); nullptr: tangent of the start, for bodies of constant tangent.
 template <class T>
 void for_each_element_tangent(const Model& model, const Slots<T>& slots, int b, const std::vector<int>* only,
                               const std::type_identity_t<ElementSink<T>>& sink, const BodyMotion<T>* at = nullptr);

@@ -15,4 +15,9 @@ bool condenses(const Model& model, const Method& method, LinearAlgebra::Engine e
   return prefers_condensed(model, predict_price(model, method, factor ? *factor : bodies_factor(model)));
 }
 
+template std::unique_ptr<CondensedTangent<double>> make_condensed_tangent(const Model&, const Slots<double>&,
+                                                                          const SystemKind&, LinearAlgebra::Engine,
+                                                                          FullBodies<double>&);
+template void make_engine(const Model&, const Slots<double>&, const Method&, const RunOptions&, Workspace<double>&);
+
 }  // namespace stickslip

@@ -65,4 +65,11 @@ void make_engine(const Model& model, const Slots<T>& slots, const Method& method
   workspace.engine = std::make_shared<Engine<T>>(engine_of_full_bodies(model, slots, kind, engine));
 }
 
+extern template std::unique_ptr<CondensedTangent<double>> make_condensed_tangent(const Model&, const Slots<double>&,
+                                                                                 const SystemKind&,
+                                                                                 LinearAlgebra::Engine,
+                                                                                 FullBodies<double>&);
+extern template void make_engine(const Model&, const Slots<double>&, const Method&, const RunOptions&,
+                                 Workspace<double>&);
+
 }  // namespace stickslip

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "methods/stepping/solve.hpp"
+#include "methods/stepping/jumps.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/sliding_scenes.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "methods/stepping/solve.hpp"
+#include "methods/method.hpp"
 #include "sensitivity/schemes.hpp"
 #include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
@@ -25,7 +25,7 @@ std::vector<Snapshot> run_through(LinearAlgebra::Engine kind, const Model& model
   RunOptions options;
   options.linear_algebra.engine = kind;
   Workspace<double> workspace;
-  const auto trajectory = solve_in<double>(model, slots, method, options, workspace);
+  const auto trajectory = solve(model, slots, method, options, workspace);
   EXPECT_TRUE(is_converged(trajectory.status)) << trajectory.message;
   const bool condensed = trajectory.engine.find("condensed") != std::string::npos;
   EXPECT_EQ(condensed, kind == LinearAlgebra::Engine::condensed) << trajectory.engine;
@@ -117,7 +117,7 @@ bool flows(const Scene& scene) {
   const Model model = make_model(scene);
   const auto slots = make_slots<double>(model, scene.as<double>());
   Workspace<double> workspace;
-  const auto trajectory = solve_in<double>(model, slots, MonolithicAL{}, {}, workspace);
+  const auto trajectory = solve(model, slots, MonolithicAL{}, {}, workspace);
   return largest_entry(trajectory.increments.back().state.history.bodies) > 1e-4;
 }
 

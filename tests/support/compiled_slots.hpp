@@ -10,6 +10,12 @@
 
 namespace stickslip {
 
+/// Tangents at a motion are those of its real part: Newton's method needs no more, and finds the same equilibrium.
+template <>
+void for_each_element_tangent(const Model& model, const Slots<std::complex<double>>& slots, int b,
+                              const std::vector<int>* only, const ElementSink<std::complex<double>>& sink,
+                              const BodyMotion<std::complex<double>>* at);
+
 STICKSLIP_SLOTS(extern, std::complex<double>);
 STICKSLIP_TANGENTS(extern, std::complex<double>);
 STICKSLIP_CONTACT(extern, std::complex<double>);

@@ -3,6 +3,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, Hex20);
+STICKSLIP_ELEMENTS_OF(, double, Hex20);
 
 }  // namespace stickslip

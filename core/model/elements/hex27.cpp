@@ -3,6 +3,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, Hex27);
+STICKSLIP_ELEMENTS_OF(, double, Hex27);
 
 }  // namespace stickslip

@@ -3,6 +3,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, Hex8);
+STICKSLIP_ELEMENTS_OF(, double, Hex8);
 
 }  // namespace stickslip

@@ -3,6 +3,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, Quad4);
+STICKSLIP_ELEMENTS_OF(, double, Quad4);
 
 }  // namespace stickslip

@@ -3,6 +3,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, Quad8);
+STICKSLIP_ELEMENTS_OF(, double, Quad8);
 
 }  // namespace stickslip

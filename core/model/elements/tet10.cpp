@@ -3,6 +3,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, Tet10);
+STICKSLIP_ELEMENTS_OF(, double, Tet10);
 
 }  // namespace stickslip

@@ -3,6 +3,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, Tet4);
+STICKSLIP_ELEMENTS_OF(, double, Tet4);
 
 }  // namespace stickslip

@@ -3,6 +3,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, Tri3);
+STICKSLIP_ELEMENTS_OF(, double, Tri3);
 
 }  // namespace stickslip

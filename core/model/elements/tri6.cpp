@@ -3,6 +3,6 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, Tri6);
+STICKSLIP_ELEMENTS_OF(, double, Tri6);
 
 }  // namespace stickslip

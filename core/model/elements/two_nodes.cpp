@@ -3,7 +3,7 @@
 
 namespace stickslip {
 
-STICKSLIP_ELEMENTS_OF(double, TwoNodes<2>);
-STICKSLIP_ELEMENTS_OF(double, TwoNodes<3>);
+STICKSLIP_ELEMENTS_OF(, double, TwoNodes<2>);
+STICKSLIP_ELEMENTS_OF(, double, TwoNodes<3>);
 
 }  // namespace stickslip
