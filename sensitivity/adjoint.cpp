@@ -5,75 +5,18 @@
 #include "core/model/storage.hpp"
 #include "sensitivity/one_sided.hpp"
 #include "sensitivity/pull_back_inside.hpp"
+#include "sensitivity/recording.hpp"
 #include "sensitivity/schemes.hpp"
 #include "sensitivity/whole_states.hpp"
 
 namespace stickslip {
 namespace {
 
-/// The slots of a scene on a tape, as functions of the numbers that are parameters. Nodal coordinates of bodies that
-/// these shape are variables of their own, so that thousands of shape parameters share one transposed extension.
-struct Recording {
-  Tape tape;
-  Numbers<Reverse> numbers;
-  Points<Reverse> made, points;  ///< by the generators; the same as variables
-  int points_end = 0;            ///< on the tape
-  Slots<Reverse> slots;
-
-  /// `stiffness`: make_slots.
-  Recording(const Model& model, const std::vector<double>* stiffness) {
-    numbers = model.scene.as<Reverse>();
-    for (const auto& parameter : model.scene.parameters)
-      for (const auto& [slot, weight] : parameter.slots)
-        if (numbers.at_slot[slot].entry < 0) numbers.at_slot[slot] = Reverse::leaf(numbers.at_slot[slot].v, tape);
-    Numbers<Reverse> unshaped = numbers;
-    for (const auto& velocity : model.velocities) unshaped.at_slot[velocity.slot] = numbers.at_slot[velocity.slot].v;
-    made = initial_points(model, unshaped);
-    points = made;
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-      auto of_body = points.middleCols(model.bodies[b].first_node, model.bodies[b].mesh.node_count);
-      const auto is_of_body = [&](const auto& velocity) { return velocity.body == static_cast<int>(b); };
-      bool shaped = std::any_of(model.velocities.begin(), model.velocities.end(), is_of_body);
-      for (const auto& x : of_body.reshaped()) shaped |= x.entry >= 0;
-      if (!shaped) continue;
-      for (auto& x : of_body.reshaped()) x = Reverse::leaf(x.v, tape);
-    }
-    points_end = tape.size();
-    slots = make_slots(model, numbers, points, stiffness);
-  }
-
-  /// Derivatives by all numbers of the scene out of those by the slots.
-  Vector<double> by_numbers(const Model& model, std::vector<double>& by) const {
-    tape.pull_back(by, points_end);
-    const auto derivative = [&](const Reverse& x) { return x.entry >= 0 ? by[x.entry] : 0; };
-    const Matrix<double> of_points = points.unaryExpr(derivative);
-    for (Eigen::Index i = 0; i < made.size(); ++i)
-      if (made.data()[i].entry >= 0) by[made.data()[i].entry] += of_points.data()[i];
-    tape.pull_back(by, 0);
-    Vector<double> out(numbers.at_slot.size());
-    for (std::size_t i = 0; i < numbers.at_slot.size(); ++i) out[i] = derivative(numbers.at_slot[i]);
-    const ShapeExtension* extension = nullptr;
-    Matrix<double> of_given;  // by the motion of given nodes along each axis, for velocities that share the extension
-    for (const auto& velocity : model.velocities) {
-      if (velocity.extension.get() != extension) {
-        extension = velocity.extension.get();
-        of_given.resize(model.dimension, extension->given().size());
-        for (int i = 0; i < model.dimension; ++i)
-          of_given.row(i) = extension->pull_back(
-              of_points.row(i).segment(model.bodies[velocity.body].first_node, of_given.cols()).transpose());
-      }
-      for (int node : velocity.moved)
-        for (int i = 0; i < model.dimension; ++i) out[velocity.slot] += velocity.direction[i] * of_given(i, node);
-    }
-    return out;
-  }
-};
-
-DerivativeStorage storage_of(const Recording& recording, const std::vector<BackwardSweep>& objectives, long waiting) {
+DerivativeStorage storage_of(Recording& recording, const std::vector<BackwardSweep>& objectives, long waiting) {
   DerivativeStorage storage;
   storage.adjoints = waiting;
-  storage.slots = slot_bytes(recording.slots).all();
-  storage.tape = recording.tape.bytes();
+  storage.slots = slot_bytes(recording.slots()).all();
+  storage.tape = recording.tape().bytes();
   for (const auto& objective : objectives) {
     storage.adjoints += static_cast<long>(objective.adjoint.capacity() * sizeof(double));
   }
@@ -214,12 +157,12 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   }
   gradients.counters += gradients.search;
   const bool with_rho = scheme_of(method).reads_regularisation;
-  Recording recording(model, with_rho ? nullptr : &slots.stiffness);
-  Tape& tape = recording.tape;
+  Recording recording(model, slots, with_rho);
+  Tape& tape = recording.tape();
   std::vector<BackwardSweep> objectives(scene.objectives.size());
   const bool energies = reads_energies(scene);
   for (auto& objective : objectives) objective.adjoint.resize(tape.size(), 0);
-  AdjointProblem problem{method, model, slots, *workspace.engine, tape, recording.slots, tape.size(), objectives};
+  AdjointProblem problem{method, model, slots, *workspace.engine, tape, recording.slots(), tape.size(), objectives};
   problem.at_supports = elements_at_supports(model);
   problem.energies = energies;
   problem.read_forces = dofs_read(model, energies);
@@ -237,7 +180,7 @@ Gradients adjoint(const Model& model, const Slots<double>& slots, const Method& 
   if (workspace.checkpoints) gradients.storage.adjoints += workspace.checkpoints->bytes();
   gradients.of_objectives = Matrix<double>::Zero(objectives.size(), scene.parameters.size());
   for (std::size_t i = 0; i < objectives.size(); ++i) {
-    const Vector<double> by = recording.by_numbers(model, objectives[i].adjoint);
+    const Vector<double> by = recording.by_numbers(objectives[i].adjoint);
     for (std::size_t j = 0; j < scene.parameters.size(); ++j)
       for (const auto& [slot, weight] : scene.parameters[j].slots) gradients.of_objectives(i, j) += weight * by[slot];
   }

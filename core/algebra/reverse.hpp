@@ -25,6 +25,10 @@ class Tape {
   /// Forgets everything from entry `start` on.
   void rewind(int start) { entries_.resize(start); }
 
+  /// Records the derivatives of `results` by the entries before `start` in place of all that was recorded since; gives
+  /// where the results are now, -1 for one that depends on nothing.
+  std::vector<int> fold(int start, const std::vector<int>& results);
+
   /// Moves derivatives from the results recorded since `start` to their arguments. `by`: the derivative of the final
   /// result by each entry. Leaves, and entries recorded before `start`, gather and keep theirs. All others are zero
   /// again, so that more may be seeded and moved.
@@ -131,6 +135,42 @@ struct ScalarBinaryOpTraits<double, stickslip::Reverse, Op> {
 }  // namespace Eigen
 
 namespace stickslip {
+
+/// Where a tape stands before a function of few arguments whose inside is not to stay on it. Of a scalar that has no
+/// tape it does nothing.
+template <class T>
+struct TapeMark {
+  template <class Arguments>
+  explicit TapeMark(const Arguments& /*arguments*/) {}
+  template <class Results>
+  void fold(Results& /*results*/) const {}
+};
+template <>
+struct TapeMark<Reverse> {
+  Tape* tape = nullptr;  ///< of the arguments; none: they are constants
+  int start = 0;
+
+  template <class Arguments>
+  explicit TapeMark(const Arguments& arguments) {
+    for (const Reverse& argument : arguments.reshaped())
+      if (argument.tape) tape = argument.tape;
+    if (tape) start = tape->size();
+  }
+  /// Puts in place of all that was recorded since the derivatives of the results by what was there before. pre: nothing
+  /// but the results is used any more.
+  /// Preaccumulation: [GW08]
+  template <class Results>
+  void fold(Results& results) const {
+    if (!tape) return;
+    std::vector<int> entries;
+    for (const Reverse& result : results) entries.push_back(result.entry);
+    const auto folded = tape->fold(start, entries);
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      results[k].entry = folded[k];
+      if (folded[k] < 0) results[k].tape = nullptr;
+    }
+  }
+};
 
 /// Variables on a tape with the values of a vector.
 inline Vector<Reverse> leaves(const Vector<double>& v, Tape& tape) {

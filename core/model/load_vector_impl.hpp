@@ -2,6 +2,7 @@
 /// any scalar; and those of pressures that follow a side, by its displacements.
 #pragma once
 
+#include "core/algebra/reverse.hpp"
 #include "core/model/element_nodes.hpp"
 #include "core/model/slots.hpp"
 
@@ -71,10 +72,14 @@ void add_body_force(const Model& model, const Load& load, int b, const Slots<T>&
     with_shape(body.mesh.shape, [&]<class Shape>(Shape) {
       const auto X = gather_coordinates<T, Shape>(slots.points, nodes.data());
       const auto add_shares = [&]<Kinematics kinematics>() {
-        for (const auto& point : quadrature_of<Shape, kinematics>()) {
-          const T volume = Gradient<T, Shape, kinematics>(point, X, slots.depths[b].thickness).volume;
-          for (int a = 0; a < Shape::nodes; ++a) add(nodes[a], T(point.value[a]) * volume);
-        }
+        const auto points = quadrature_of<Shape, kinematics>();
+        std::array<T, points_of<Shape>(kinematics)> volumes;
+        const TapeMark<T> mark(X);
+        for (std::size_t q = 0; q < points.size(); ++q)
+          volumes[q] = Gradient<T, Shape, kinematics>(points[q], X, slots.depths[b].thickness).volume;
+        mark.fold(volumes);
+        for (std::size_t q = 0; q < points.size(); ++q)
+          for (int a = 0; a < Shape::nodes; ++a) add(nodes[a], T(points[q].value[a]) * volumes[q]);
       };
       if constexpr (Shape::dimension == 2)
         if (slots.depths[b].of_revolution) return add_shares.template operator()<Kinematics::revolution>();

@@ -31,28 +31,48 @@ T bar_area(const Slots<T>& slots, int b) {
   return std::get<BarLaw<T>>(law).area;
 }
 
+namespace detail {
+
+/// Calls f(b, elements, place) for each body with its elements that touch a contact node; place[node]: its index among
+/// Model::contact_nodes, or -1.
+template <class F>
+void for_each_touching(const Model& model, F&& f) {
+  std::vector<int> place(model.node_count, -1);
+  for (std::size_t i = 0; i < model.contact_nodes.size(); ++i) place[model.contact_nodes[i]] = static_cast<int>(i);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    std::vector<int> touching;
+    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e) {
+      const auto nodes = element_nodes(model.bodies[b], e);
+      if (std::any_of(nodes.begin(), nodes.end(), [&](int node) { return place[node] >= 0; })) touching.push_back(e);
+    }
+    f(b, touching, place);
+  }
+}
+
+/// Calls f(i, r, c, k) with each entry k = K(r', c') of an element's tangent that adds to entry (r, c) of the block of
+/// contact node i.
+template <class T, class F>
+void for_each_block_entry(int dimension, const std::vector<int>& nodes, const std::vector<int>& place,
+                          const Eigen::Ref<const Matrix<T>>& K, F&& f) {
+  for (int a = 0; a < static_cast<int>(nodes.size()); ++a)
+    if (place[nodes[a]] >= 0)
+      for (int i = 0; i < dimension; ++i)
+        for (int j = 0; j < dimension; ++j) f(place[nodes[a]], i, j, K(a * dimension + i, a * dimension + j));
+}
+
+}  // namespace detail
+
 template <class T>
 std::vector<Matrix<T>> nodal_stiffness(const Model& model, const Slots<T>& slots) {
   const int D = model.dimension;
-  std::vector<int> place(model.node_count, -1);
-  for (std::size_t i = 0; i < model.contact_nodes.size(); ++i) place[model.contact_nodes[i]] = static_cast<int>(i);
   std::vector<Matrix<T>> blocks(model.contact_nodes.size(), Matrix<T>::Constant(D, D, T(0)));
-  const auto add = [&](const std::vector<int>& nodes, const auto& K) {
-    for (std::size_t a = 0; a < nodes.size(); ++a)
-      if (place[nodes[a]] >= 0)
-        for (int i = 0; i < D; ++i)
-          for (int j = 0; j < D; ++j) blocks[place[nodes[a]]](i, j) += K(a * D + i, a * D + j);
-  };
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    std::vector<int> touching;
-    for (int e = 0; e < model.bodies[b].mesh.element_count(); ++e)
-      for (int node : detail::element_nodes(model.bodies[b], e))
-        if (place[node] >= 0) {
-          touching.push_back(e);
-          break;
-        }
-    for_each_element_tangent(model, slots, static_cast<int>(b), &touching, std::ref(add));
-  }
+  detail::for_each_touching(model, [&](int b, const std::vector<int>& touching, const std::vector<int>& place) {
+    const auto add = [&](const std::vector<int>& nodes, const Eigen::Ref<const Matrix<T>>& K) {
+      detail::for_each_block_entry<T>(D, nodes, place, K,
+                                      [&](int block, int i, int j, const T& k) { blocks[block](i, j) += k; });
+    };
+    for_each_element_tangent(model, slots, b, &touching, std::ref(add));
+  });
   return blocks;
 }
 
@@ -101,9 +121,9 @@ T stiffness_between(const Model& model, const Slots<T>& slots, int p, const T& s
   return value(tenth) < value(most) ? tenth : most;
 }
 
+/// `blocks`: nodal_stiffness().
 template <class T>
-std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
-  const auto blocks = nodal_stiffness(model, slots);
+std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots, const std::vector<Matrix<T>>& blocks) {
   const auto block_of = [&](int node) -> const Matrix<T>& {
     const auto& nodes = model.contact_nodes;
     return blocks[std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()];
@@ -143,6 +163,10 @@ std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
     stiffness.push_back(point.obstacle >= 0 ? slave : stiffness_between(model, slots, p, slave, master));
   }
   return stiffness;
+}
+template <class T>
+std::vector<T> contact_stiffness(const Model& model, const Slots<T>& slots) {
+  return contact_stiffness(model, slots, nodal_stiffness(model, slots));
 }
 
 template <class T>

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -74,6 +75,45 @@ TEST(Tape, StopsWhereASweepIsToStopAndForgetsWhatIsRewound) {
   by.resize(start);
   tape.pull_back(by, 0);
   EXPECT_EQ(by[x.entry], 12);
+}
+
+TEST(Tape, FoldsAFunctionToItsDerivatives) {
+  const auto function = [](const Vector<Reverse>& x, const Reverse& before) {
+    Reverse sum = x[0] * before;
+    for (int k = 0; k < 20; ++k) sum = sum + sin(x[k % 2] * sum);
+    return std::array<Reverse, 4>{sum, before, Reverse(7), x[1] / x[0]};
+  };
+  const auto derivatives = [&](bool folds, int& size) {
+    Tape tape;
+    const Vector<Reverse> x = leaves(Vec<double, 2>(1.3, 0.4), tape);
+    const Reverse before = x[0] * x[1];
+    const TapeMark<Reverse> mark(x);
+    auto results = function(x, before);
+    if (folds) mark.fold(results);
+    size = tape.size();
+    const Reverse end = results[0] * results[1] * results[2] + results[3];
+    std::vector<double> by(tape.size());
+    by[end.entry] = 1;
+    tape.pull_back(by, 0);
+    return Vec<double, 3>(end.v, by[x[0].entry], by[x[1].entry]);
+  };
+  int whole = 0, folded = 0;
+  const auto expected = derivatives(false, whole), found = derivatives(true, folded);
+  EXPECT_LE((found - expected).norm(), 100 * epsilon * expected.norm());  // sums of some forty products
+  EXPECT_EQ(found[0], expected[0]);
+  EXPECT_GT(whole, 60);
+  EXPECT_EQ(folded, 3 + 3 + 2);  // the arguments and what was before; three partial derivatives, and two
+}
+
+TEST(Tape, FoldsNothingOfConstants) {
+  const Vec<Reverse, 2> constants(1.0, 2.0);
+  std::array<Reverse, 1> results{constants[0] + constants[1]};
+  TapeMark<Reverse>(constants).fold(results);
+  EXPECT_EQ(results[0].v, 3);
+  EXPECT_EQ(results[0].tape, nullptr);
+  std::array<double, 1> plain{3};
+  TapeMark<double>(Vec<double, 2>(1, 2)).fold(plain);
+  EXPECT_EQ(plain[0], 3);
 }
 
 }  // namespace
