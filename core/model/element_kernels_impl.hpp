@@ -135,9 +135,12 @@ struct ContinuumKernels {
 
   static void energy(const Elements& elements, const Vector<T>& u, const Vector<T>& memory, T& energy) {
     for_each(elements, [&]<Kinematics kinematics, class L>(const L& law, int e, const int* nodes, const Places& X) {
-      energy += element_energy<T, Shape, kinematics>(law, X, detail::gather_displacements<T, Shape>(u, nodes),
-                                                     thickness(elements),
-                                                     detail::memory_of_element<L>(elements.body(), e, memory));
+      const Places motion = detail::gather_displacements<T, Shape>(u, nodes);
+      const TapeMark<T> mark(motion);
+      std::array<T, 1> of_element{element_energy<T, Shape, kinematics>(
+          law, X, motion, thickness(elements), detail::memory_of_element<L>(elements.body(), e, memory))};
+      mark.fold(of_element);
+      energy += of_element[0];
     });
   }
 

@@ -388,8 +388,9 @@ TEST(SolidBodies, ThatSlideOverSplinesAndTrianglesHaveTheDerivativesOfTheOracle)
 }
 
 TEST(SolidBodies, LeaveNoElementOnTheTapeOfTheAdjoint) {
-  // Of a hexahedron a tangent takes 1.8 MB of tape where it is recorded whole, and a volume 240 kB. What is left of a
-  // volume, eight points by 25 inputs and their shares for eight nodes, takes 16 kB; a tape grows by halves or doubles.
+  // Of a hexahedron a tangent takes 1.8 MB of tape where it is recorded whole, a volume or an energy 200 kB. What is
+  // left of a volume, eight points by 25 inputs and their shares for eight nodes, takes 16 kB; a tape may double as it
+  // grows.
   constexpr long kept = 2 * 16'000;
   const auto tape_of = [](int cells, const Method& method) {
     Scene s = twisted_block(LinearElastic{1000.0, 0.3}, false);
