@@ -1,5 +1,6 @@
 #include "methods/method.hpp"
 
+#include "methods/stepping/solve.hpp"
 #include "methods/stepping/solve_again.hpp"
 
 namespace stickslip {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "core/model/contact_geometry.hpp"
@@ -71,6 +72,7 @@ std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
 /// Largest derivative of a contact node or of a number of an obstacle, over the mesh size of the slave.
 double speed(const Model& model, const Points<Direction>& points, const Numbers<Direction>& numbers) {
   double fastest = 0, size = std::numeric_limits<double>::infinity();
+  std::map<int, Points<Direction>> of_obstacle;
   for (const auto& point : model.points) {
     if (!may_leave(model, point)) continue;
     size = point.mesh_size > 0 ? std::min(size, point.mesh_size) : size;
@@ -80,13 +82,12 @@ double speed(const Model& model, const Points<Direction>& points, const Numbers<
           fastest = std::max(fastest, std::abs(points(i, node).d[0]));
     const auto vertices = vertices_faced(model, point);
     if (vertices.empty()) continue;
-    const auto& polyline = std::get<Polyline>(model.scene.obstacles[point.obstacle].shape);
+    Points<Direction>& of = of_obstacle[point.obstacle];
+    if (of.size() == 0) of = vertices_of(model.scene.obstacles[point.obstacle].shape, numbers);
     for (int v : vertices)
-      for (const Number& x : polyline.points[v]) fastest = std::max(fastest, std::abs(numbers(x).d[0]));
-    const auto& from = polyline.points[vertices[0]];
-    const auto& to = polyline.points[vertices[1]];
-    const double length = std::hypot(numbers(to[0]).v - numbers(from[0]).v, numbers(to[1]).v - numbers(from[1]).v);
-    size = std::min(size, length);
+      for (int i = 0; i < 2; ++i) fastest = std::max(fastest, std::abs(of(i, v).d[0]));
+    const Points<double> way = values(Points<Direction>(of.col(vertices[1]) - of.col(vertices[0])));
+    size = std::min(size, way.norm());
   }
   return std::isfinite(size) ? fastest / size : 0;
 }

@@ -134,9 +134,10 @@ SchemeEquilibrium scheme_equilibrium(const UzawaAL& method, const Problem& probl
   return {method, at.state, oversize, {}, std::move(rho), std::move(state)};
 }
 
-/// Per parameter: largest derivative of the place of a contact node. In space a foot is a place of its surface, and
-/// rounds as the place of the node does. Elsewhere Dg has displacements alone, and this is zero.
-Vector<double> largest_shift(const Differentiation& problem) {
+/// Per parameter: what rounds as a displacement of this derivative does, length. In space a foot is a place of its
+/// surface, summed up over as many as 60 vertices, so it rounds as the place of the node does, and eight times as much
+/// as what has few terms. Elsewhere Dg has displacements alone, and this is zero.
+Vector<double> rounding_shift(const Differentiation& problem) {
   Vector<double> largest = Vector<double>::Zero(problem.parameters);
   const Model& model = problem.model;
   if (model.dimension != 3 || model.surfaces.empty()) return largest;
@@ -145,7 +146,7 @@ Vector<double> largest_shift(const Differentiation& problem) {
       for (int node : model.contact_nodes)
         for (const Direction& x : block.slots.points.col(node))
           largest[block.parameters[d]] = std::max(largest[block.parameters[d]], std::abs(x.d[d]));
-  return largest;
+  return 8 * largest;
 }
 
 /// Iterates D lambda <- D t until each parameter has ended. False if the passes reach their limit, or if a tangent is
@@ -180,7 +181,7 @@ bool iterate(Differentiation& problem, LinearisedEquilibrium& linearised, const 
   Matrix<double> at_least;                        // D lambda after it
   auto columns = [&](auto&& pick) { return gather(problem.blocks, problem.parameters, pick); };
   auto& record = problem.record.emplace();
-  const Vector<double> shift = largest_shift(problem);
+  const Vector<double> shift = rounding_shift(problem);
   detail::PassConvergence convergence;
   for (int pass = 1; pass <= detail::PassConvergence::limit; ++pass) {
     const Matrix<double> before = columns([&](auto&, int b) -> auto& { return lambda[b]; });

@@ -13,7 +13,7 @@ import sys
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 BLOCK = re.compile(r"(<!-- keys (\w+) ?(\S*) -->\n).*?(<!-- end of keys -->)", re.S)
-AGAIN = {"swept_method", "plane_mesh"}  # what has a table already: options as lists, meshes that are drawn out
+AGAIN = {"swept_method", "mesh", "plane_mesh"}  # what has a table already: options as lists, meshes of other things
 
 
 class Tables:

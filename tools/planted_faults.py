@@ -154,7 +154,7 @@ FAULTS = [
     ("node over an edge that takes one face alone", "core/contact/surfaces.hpp",
      "nodes.begin()] -= <<<share>>> * at.weights[k]", "T(&face == &faces[0] ? 1.0 : 0.0)"),
     ("rigid facets that stay where they were", "core/model/facings_impl.hpp",
-     "at.col(v) = place({X, <<<frame.displacement(X)>>>});", "Vec<T, D>(Vec<T, D>::Constant(T(0)))"),
+     "frame(surface.is_rigid() ? <<<positions().template frame<D>(surface.obstacle)>>> : Frame<T, D>{}),", "Frame<T, D>{}"),
     ("an STL file's triangles without its scale", "studies/input/obstacle_kinds.cpp",
      "RigidFacets facets{<<<*factor>>> * surface.vertices, {}};", "1.0"),
     ("cylinder that does not see its axis", "core/contact/cylinder.hpp",

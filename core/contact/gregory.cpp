@@ -20,6 +20,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace stickslip::detail {
 namespace {
@@ -28,11 +29,21 @@ using std::numbers::pi;
 
 /// A point as weights of nodes.
 struct Combination {
-  std::map<int, double> weights;
+  std::vector<std::pair<int, double>> weights;  ///< nodes ascending
   Combination() = default;
   explicit Combination(int node) : weights{{node, 1.0}} {}
   Combination& operator+=(const Combination& other) {
-    for (const auto& [node, weight] : other.weights) weights[node] += weight;
+    std::vector<std::pair<int, double>> sum;
+    sum.reserve(weights.size() + other.weights.size());
+    auto own = weights.begin();
+    for (const auto& [node, weight] : other.weights) {
+      while (own != weights.end() && own->first < node) sum.push_back(*own++);
+      const bool is_shared = own != weights.end() && own->first == node;
+      sum.emplace_back(node, (is_shared ? (own++)->second : 0) + weight);
+    }
+    sum.insert(sum.end(), own, weights.end());
+    sum.shrink_to_fit();
+    weights = std::move(sum);
     return *this;
   }
   friend Combination operator*(double factor, Combination of) {
@@ -77,9 +88,8 @@ class ControlPoints {
           place[fan->faces[k]][corner] = k;
         }
       }
-    std::vector<std::vector<Combination>> all;
-    for (std::size_t f = 0; f < patches_.size(); ++f) all.push_back(points_of(patches_[f].corners, fans[f], place[f]));
-    for (std::size_t f = 0; f < patches_.size(); ++f) keep(all[f], patches_[f]);
+    for (std::size_t f = 0; f < patches_.size(); ++f)
+      keep(points_of(patches_[f].corners, fans[f], place[f]), patches_[f]);
   }
 
  private:

@@ -7,11 +7,10 @@
 ///                      displacement w adds, so that a small displacement keeps its digits far from the origin
 ///   ambiguous_at()     only if it has a place from which no part of it is nearer than another
 ///
-/// What it lacks does not compile. A polyline, and facets in space, have no against(): which facet a place faces is
-/// found by search (core/contact/facet_search.hpp, surface_search.hpp).
+/// What it lacks does not compile. Those that are made of facets (rigid_facets.hpp) have no against(): which facet a
+/// place faces is found by search (core/contact/facet_search.hpp, surface_search.hpp).
 #pragma once
 
-#include <array>
 #include <concepts>
 #include <string>
 #include <variant>
@@ -20,33 +19,38 @@
 #include "core/contact/circle.hpp"
 #include "core/contact/cylinder.hpp"
 #include "core/contact/plane.hpp"
+#include "core/contact/rigid_facets.hpp"
 #include "core/contact/sphere.hpp"
 
 namespace stickslip {
 
-/// Rigid curve from point to point, the solid on its right. `closed`: the last point is the first again.
-struct Polyline {
-  static constexpr bool is_in_plane = true, is_in_space = false, is_flat = false, has_facets = true;
-  static constexpr const char* if_turned = "turn the points of the polyline round: its solid is on their right";
-  std::vector<std::array<Number, 2>> points;  ///< without the repeated one
-  bool closed = false;
-};
-
-/// Rigid surface of triangles and quadrilaterals, the solid behind them.
-struct RigidFacets {
-  static constexpr bool is_in_plane = false, is_in_space = true, is_flat = false, has_facets = true;
-  static constexpr const char* if_turned = "turn the facets of its file round: its solid is behind them";
-  Eigen::Matrix3Xd vertices;             ///< length
-  std::vector<std::vector<int>> facets;  ///< three or four vertices each, counter-clockwise seen from outside
-};
-
-using RigidSurface = std::variant<Plane, Circle, Sphere, Cylinder, Polyline, RigidFacets>;
+using RigidSurface = std::variant<Plane, Circle, Sphere, Cylinder, Polyline, RigidFacets, MeshSide>;
 
 /// Whether a surface is made of facets that lie beside one another: points slide along it as along a side of a body.
 inline bool has_facets(const RigidSurface& surface) {
   return std::visit(
       []<class S>(const S&) {
         return requires { S::has_facets; };
+      },
+      surface);
+}
+
+/// Initial positions of the vertices of a surface that is made of facets, D x vertices, length; of another none.
+template <class T>
+Points<T> vertices_of(const RigidSurface& surface, const Numbers<T>& numbers) {
+  return std::visit(
+      [&]<class S>(const S& shape) -> Points<T> {
+        if constexpr (requires { S::has_facets; }) return vertices_of(shape, numbers);
+        return {};
+      },
+      surface);
+}
+/// Facets of a surface that is made of them; of another none.
+inline std::vector<std::vector<int>> facets_of(const RigidSurface& surface) {
+  return std::visit(
+      []<class S>(const S& shape) -> std::vector<std::vector<int>> {
+        if constexpr (requires { S::has_facets; }) return facets_of(shape);
+        return {};
       },
       surface);
 }

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "core/contact/box_tree.hpp"
 #include "core/contact/face_search.hpp"
@@ -187,6 +189,19 @@ class SurfaceSearch : public PatchSearch<D> {
   Facing foot_on(int patch, const Vec<double, D>& x) const {
     return this->newton_foot({patch, this->middle_of(patch)}, x, 0);
   }
+};
+
+/// A surface that keeps its shape, and the search along it. Its places are from its first vertex. Not to be copied.
+template <int D>
+struct StillSurface {
+  std::shared_ptr<const Surface<D>> patches;
+  Places<D> places;  ///< of the vertices
+  SurfaceSearch<D> search;
+
+  /// `positions`: of the vertices. pre: there is one.
+  StillSurface(std::shared_ptr<const Surface<D>> of, const Places<D>& positions)
+      : patches(std::move(of)), places(positions.colwise() - positions.col(0)), search(*patches, places) {}
+  StillSurface(const StillSurface&) = delete;
 };
 
 }  // namespace stickslip

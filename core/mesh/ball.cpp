@@ -8,8 +8,6 @@ namespace {
 
 using Place = BallLayout::Place;
 
-bool is_odd(int k) { return k % 2 != 0; }
-
 /// Appends the cells. Which of them are turned over is told by the parity of their indices, so the diagonals of faces
 /// agree between the core and the layers, and across the edges of the cube.
 void append_cells(const BallLayout& of, Mesh& mesh) {

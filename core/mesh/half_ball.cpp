@@ -9,8 +9,6 @@
 namespace stickslip {
 namespace {
 
-bool is_odd(int k) { return k % 2 != 0; }
-
 /// Appends the cells of a half ball. Which of them are turned over is told by the parity of their indices, so the
 /// diagonals of faces agree between the block and the shells, and are symmetric about the axis.
 class HalfBallCells {

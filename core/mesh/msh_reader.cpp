@@ -61,7 +61,7 @@ class Import {
           result_.bodies.push_back(*body);
         }
       }
-    if (!found) report_no_body();
+    if (!found && result_.no_body.empty()) report_no_body();
     if (result_.errors.empty()) note_unused();
   }
 
@@ -80,11 +80,11 @@ class Import {
                          " is of a mesh in space, and the space of the scene is "
                          "plane; \"space\": \"solid\" takes this mesh");
     if (!is_in_space && dimension_ == 3)
-      result_.errors.push_back(file_name_ +
-                               ":1:1: no element is a tetrahedron or a hexahedron, so there is no body for "
-                               "the space solid; give its volume a physical name and mesh it (gmsh -3); a plane mesh "
-                               "needs a plane space, such as \"space\": \"plane_strain\"");
-    return is_in_space != (dimension_ == 3);
+      result_.no_body = file_name_ +
+                        ":1:1: no element is a tetrahedron or a hexahedron, so there is no body for "
+                        "the space solid; give its volume a physical name and mesh it (gmsh -3); a plane mesh "
+                        "needs a plane space, such as \"space\": \"plane_strain\"";
+    return is_in_space && dimension_ == 2;
   }
 
   std::string name_of(const MshGroup& group) const {
@@ -100,10 +100,10 @@ class Import {
     const auto fills = [&](const MshElement& e) { return e.group.first == dimension_; };
     const auto count = std::count_if(file_.elements.begin(), file_.elements.end(), fills);
     const std::string kind = kind_of_group(dimension_);
-    result_.errors.push_back(file_name_ + ":1:1: no element belongs to a physical " + kind +
-                             ", so there is no body; the file has " + std::to_string(count) +
-                             (dimension_ == 2 ? " plane" : " solid") + " elements in no physical " + kind +
-                             " and the physical groups: " + (existing.empty() ? "none" : joined(existing)));
+    result_.no_body = file_name_ + ":1:1: no element belongs to a physical " + kind +
+                      ", so there is no body; the file has " + std::to_string(count) +
+                      (dimension_ == 2 ? " plane" : " solid") + " elements in no physical " + kind +
+                      " and the physical groups: " + (existing.empty() ? "none" : joined(existing));
   }
 
   std::optional<ImportedMesh> body_of(const MshGroup& group, const Elements& elements) {
@@ -330,12 +330,33 @@ class Import {
       const auto first = std::find_if(elements.begin(), elements.end(), lost);
       if (first == elements.end()) continue;
       if (std::all_of(elements.begin(), elements.end(), lost)) {
+        if (group.first == dimension_ - 1) add_loose(group, elements);
         result_.notes.push_back(what + " is not on a body");
       } else {
         fault(*first, "element " + std::to_string((*first)->tag) + " of " + what + " is no " +
                           (dimension_ == 2 ? "" : "face, ") + "edge or node of an element of a body");
       }
     }
+  }
+
+  void add_loose(const MshGroup& group, const Elements& elements) {
+    ImportedMesh loose{file_name_, "", {}, {}, {}};
+    loose.mesh.dimension = dimension_;
+    std::map<int, int> number;
+    std::vector<ElementFacet> own;
+    std::map<ElementFacet, const MshElement*> listed;
+    for (const MshElement* element : elements) {
+      if (!is_new(element, group, listed)) continue;
+      std::vector<int> at(element->nodes.begin(), element->nodes.begin() + element->node_count);
+      for (int& n : at) n = number.emplace(n, static_cast<int>(number.size())).first->second;
+      own.push_back(element_facet(at, dimension_));
+    }
+    loose.mesh.node_count = static_cast<int>(number.size());
+    loose.points.resize(dimension_, loose.mesh.node_count);
+    for (const auto& [of_file, n] : number)
+      for (int axis = 0; axis < dimension_; ++axis) loose.points(axis, n) = file_.nodes[of_file].place[axis];
+    loose.mesh.sides.emplace(name_of(group), side_of_facets(own, dimension_));
+    result_.loose.push_back(std::move(loose));
   }
 
   const std::string& text_;

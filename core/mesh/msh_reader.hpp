@@ -1,6 +1,7 @@
 /// Bodies and sides from a mesh file of Gmsh (MSH 2.2 and 4.1, ASCII). In the plane a physical surface is a body, and
 /// the physical curves and points on it are its sides; in space a physical volume is a body, and the physical surfaces,
-/// curves and points on it are its sides. Groups without a name go by their number.
+/// curves and points on it are its sides. Surfaces of space, and curves of the plane, that are on no body are loose: a
+/// rigid obstacle may have their shape. Groups without a name go by their number.
 #pragma once
 
 #include <istream>
@@ -19,6 +20,10 @@ struct ImportResult {
   /// counter-clockwise seen from outside; a curve or a point is nodes alone. A side inside a body is directed as the
   /// file directs it.
   std::vector<ImportedMesh> bodies;
+  /// One per physical surface (in the plane curve) on no body: its nodes and no element; the side that has its name,
+  /// directed as in the file.
+  std::vector<ImportedMesh> loose = {};
+  std::string no_body = {};         ///< why there is no body, as an error; "" if there is one
   std::vector<std::string> errors;  ///< "FILE:LINE:COL: what is wrong"; if there is one, `bodies` may lack some
   std::vector<std::string> notes;   ///< what the file holds and no body uses, and nodes at one place
 };
@@ -26,8 +31,7 @@ struct ImportResult {
 /// Reads a stream to its end, for a space of two or three dimensions. Never throws on a bad file, however broken;
 /// errors say what is wrong with it: an unknown version, binary, truncated, wrong counts, other elements than these,
 /// elements of a body that are mixed, degenerate, turned against each other, listed twice or overlap, faces, lines or
-/// points of a group that are listed twice, no physical surface (volume), two groups of one name, not plane, a mesh of
-/// the other space.
+/// points of a group that are listed twice, two groups of one name, not plane, a mesh of the other space.
 ImportResult read_msh(std::istream&, const std::string& file_name, int dimension = 2);
 
 /// What is wrong with asking for this body: "" if it is there, else which there are and which is nearest.

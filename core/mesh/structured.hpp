@@ -131,6 +131,9 @@ Mesh grid(const std::array<int, 2>& cells, const std::string& element);
 /// along the first direction, front back along the second, bottom top along the third.
 Mesh grid(const std::array<int, 3>& cells, const std::string& element);
 
+/// Whether a cell of a row is turned over, if its neighbours are turned over in turn.
+inline bool is_odd(int k) { return k % 2 != 0; }
+
 /// Appends a cell of space, as one hexahedron, or as six tetrahedra around its diagonal from corner 0 to corner 6.
 /// `mirrored`: along which directions the cell is turned over before. Neighbours are turned over in turn, so the
 /// diagonals of a face that they share agree, and no direction is preferred.

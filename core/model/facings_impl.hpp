@@ -1,6 +1,9 @@
 /// Definitions of the templates in facings.hpp.
 #pragma once
 
+#include <memory>
+#include <optional>
+
 #include "core/contact/surface_search.hpp"
 #include "core/model/contact_geometry.hpp"
 #include "core/model/facings.hpp"
@@ -17,24 +20,29 @@ int last_faced(const ContactInput<T>& input, int p) {
 }
 
 /// A surface where displacements have moved it, and the search along it. Places are from the first vertex at the start,
-/// so that what lies far from the origin is found as near it. Not to be copied.
+/// so that what lies far from the origin is found as near it. An obstacle stays where it was at the start, and all else
+/// is seen from it. Not to be copied.
 template <class T, int D>
 struct MovedSurface {
   using Place = Vec<double, D>;
   const ContactInput<T>& input;
   const Vector<T>& compact;  ///< displacements of the contact nodes
   Place origin;
-  Places<D> places;  ///< of the vertices
-  SurfaceSearch<D> search;
+  Frame<T, D> frame;  ///< that places are seen from
 
   /// All arguments must outlive this.
   MovedSurface(const ContactInput<T>& input, const MasterSurface& surface, const Vector<T>& compact)
       : input(input),
         compact(compact),
         origin(values(positions().template vertex<D>(surface, 0).start)),
-        places(places_of(surface)),
-        search(surface.patches<D>(), places) {}
+        frame(surface.is_rigid() ? positions().template frame<D>(surface.obstacle) : Frame<T, D>{}),
+        places_(places_of(surface)) {
+    if (const auto* still = std::get_if<std::shared_ptr<const StillSurface<D>>>(&surface.still)) still_ = *still;
+    if (!still_ || still_->places != places_) own_.emplace(surface.patches<D>(), places_);
+  }
   MovedSurface(const MovedSurface&) = delete;
+
+  const SurfaceSearch<D>& search() const { return own_ ? *own_ : still_->search; }
 
   /// Place of the slave node of a point.
   Place slave(const ContactPoint& point) const { return place(positions().template slave<D>(point)); }
@@ -58,21 +66,19 @@ struct MovedSurface {
 
  private:
   auto positions() const { return positions_at<D>(input.model, input.slots, compact, input.time); }
-  Place place(const Placed<T, T, D>& at) const { return values(at.start) - origin + values(at.moved); }
+  Place place(const Placed<T, T, D>& at) const {
+    return values(at.start) - origin + values(frame.seen(at.start, at.moved));
+  }
   Places<D> places_of(const MasterSurface& surface) const {
+    if (surface.is_rigid()) return values(input.slots.vertices[surface.obstacle]).colwise() - origin;
     Places<D> at(D, surface.vertex_count);
-    if (!surface.is_rigid()) {
-      for (int v = 0; v < surface.vertex_count; ++v) at.col(v) = place(positions().template vertex<D>(surface, v));
-      return at;
-    }
-    const Obstacle& obstacle = input.model.scene.obstacles[surface.obstacle];  // (one frame for all of its vertices)
-    const auto frame = positions().template frame<D>(surface.obstacle);
-    for (int v = 0; v < surface.vertex_count; ++v) {
-      const Vec<T, D> X = start_of_vertex<D>(obstacle, input.slots.numbers, v);
-      at.col(v) = place({X, frame.displacement(X)});
-    }
+    for (int v = 0; v < surface.vertex_count; ++v) at.col(v) = place(positions().template vertex<D>(surface, v));
     return at;
   }
+
+  Places<D> places_;                              ///< of the vertices
+  std::shared_ptr<const StillSurface<D>> still_;  ///< of an obstacle
+  std::optional<SurfaceSearch<D>> own_;  ///< of what has moved, or has other places than the model was made for
 };
 
 /// What a vertex of a side in contact with itself faces, and the nearest patch that it may face (PatchSearch).
@@ -127,12 +133,12 @@ void find_along_surface(const ContactInput<T>& input, int surface, const Vector<
     if (point.surface != surface) continue;
     const Vec<double, D> x = now.slave(point);
     if (!kept.empty() && kept[p] != no_patch) {
-      found[p] = now.search.foot_on(kept[p], x);
+      found[p] = now.search().foot_on(kept[p], x);
       continue;
     }
-    found[p] = point.own.vertex == no_vertex ? now.search.facing(x, now.outward(point), !input.previous.faced[p])
-                                             : facing_itself(now.search, model.surfaces[surface], x, now.outward(point),
-                                                             point.own, last_faced(input, p));
+    found[p] = point.own.vertex == no_vertex ? now.search().facing(x, now.outward(point), !input.previous.faced[p])
+                                             : facing_itself(now.search(), model.surfaces[surface], x,
+                                                             now.outward(point), point.own, last_faced(input, p));
   }
 }
 
@@ -160,7 +166,7 @@ void place_open_vertices_beside(const ContactInput<T>& input, const Vector<T>& c
     if (of != point.surface) now.emplace(input, side, compact);
     of = point.surface;
     facing.nearest =
-        nearest_of_itself(now->search, side, now->slave(point), now->outward(point), point.own, last_faced(input, p));
+        nearest_of_itself(now->search(), side, now->slave(point), now->outward(point), point.own, last_faced(input, p));
     PlacedPoint<T, D> at;
     if (facing.nearest != no_patch)
       place_beside(positions_at<D>(input.model, input.slots, compact, input.time), point, facing.nearest, at);

@@ -120,31 +120,6 @@ std::array<int, 3> QuadraticEdges::of_facet(int a, int b) const {
 }
 
 template <int D>
-Places<D> vertices_of(const Obstacle& obstacle, const Numbers<double>& numbers) {
-  Eigen::Index count = 0;
-  if constexpr (D == 2)
-    count = std::ssize(std::get<Polyline>(obstacle.shape).points);
-  else
-    count = std::get<RigidFacets>(obstacle.shape).vertices.cols();
-  Places<D> vertices(D, count);
-  for (Eigen::Index v = 0; v < vertices.cols(); ++v)
-    vertices.col(v) = detail::start_of_vertex<D>(obstacle, numbers, static_cast<int>(v));
-  return vertices;
-}
-
-template Places<2> vertices_of<2>(const Obstacle&, const Numbers<double>&);
-template Places<3> vertices_of<3>(const Obstacle&, const Numbers<double>&);
-
-std::vector<std::vector<int>> facets_of(const Obstacle& obstacle) {
-  if (const auto* surface = std::get_if<RigidFacets>(&obstacle.shape)) return surface->facets;
-  const auto& polyline = std::get<Polyline>(obstacle.shape);
-  const int count = static_cast<int>(polyline.points.size());
-  std::vector<std::vector<int>> facets;
-  for (int v = 0; v + 1 < count + polyline.closed; ++v) facets.push_back({(v + 1) % count, v});
-  return facets;
-}
-
-template <int D>
 std::pair<MasterSurface, Places<D>> make_master(const Model& model, const Points<double>& points, int contact_index,
                                                 int obstacle, std::vector<std::vector<int>> facets) {
   const Contact& contact = model.scene.contacts[contact_index];
@@ -153,9 +128,11 @@ std::pair<MasterSurface, Places<D>> make_master(const Model& model, const Points
   master.obstacle = obstacle;
   Places<D> places;
   if (obstacle >= 0) {
-    places = vertices_of<D>(model.scene.obstacles[obstacle], model.scene.as<double>());
-    facets = facets_of(model.scene.obstacles[obstacle]);
-    if (contact.segment) std::reverse(facets.begin(), facets.end());  // each begins where the one before ends
+    const RigidSurface& shape = model.scene.obstacles[obstacle].shape;
+    places = vertices_of(shape, model.scene.as<double>());
+    facets = facets_of(shape);
+    if (contact.segment && std::holds_alternative<Polyline>(shape))  // each begins where the one before ends
+      std::reverse(facets.begin(), facets.end());
   } else {
     if constexpr (D == 2)
       if (contact.is_of_itself() || contact.segment) facets = ordered_facets(facets, points);
@@ -170,7 +147,8 @@ std::pair<MasterSurface, Places<D>> make_master(const Model& model, const Points
   if constexpr (D == 3)
     if (contact.is_of_itself()) master.start = places;
   try {
-    master.surface = make_surface<D>(facets, contact.smoothing, contact.corner, places);
+    master.surface =
+        std::make_shared<const Surface<D>>(make_surface<D>(facets, contact.smoothing, contact.corner, places));
   } catch (const std::runtime_error& error) {
     throw ModelError(contact.master + ": " + error.what(), "/contacts/" + contact.name + "/master");
   }

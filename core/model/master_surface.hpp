@@ -10,14 +10,6 @@
 
 namespace stickslip {
 
-/// Vertices of an obstacle that has facets, D x vertices, length.
-template <int D>
-Places<D> vertices_of(const Obstacle& obstacle, const Numbers<double>& numbers);
-
-/// Facets of an obstacle that has them, by its vertices, as make_surface() takes them. A polyline has its solid on the
-/// right, so in the plane they are reversed.
-std::vector<std::vector<int>> facets_of(const Obstacle& obstacle);
-
 /// Master surface of the contact Scene::contacts[contact], and the initial positions of its vertices. Throws ModelError
 /// if the facets are no surface.
 ///

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -23,6 +24,9 @@
 #include "core/solids/continuum.hpp"
 
 namespace stickslip {
+
+template <int D>
+struct StillSurface;  // core/contact/surface_search.hpp
 
 /// Error of a scene that cannot become a model. what(): the reason in the user's words; `pointer`: JSON pointer of the
 /// entry of the scene, "" if it concerns none.
@@ -48,7 +52,9 @@ struct MasterSurface {
   std::vector<int> nodes;   ///< per vertex: node; empty for an obstacle
   std::vector<int> places;  ///< index of these nodes in Model::contact_nodes
   int vertex_count = 0;
-  std::variant<Surface<2>, Surface<3>> surface;
+  std::variant<std::shared_ptr<const Surface<2>>, std::shared_ptr<const Surface<3>>> surface;
+  /// Of an obstacle along which points slide: where it is at the start, and the search along it there.
+  std::variant<std::shared_ptr<const StillSurface<2>>, std::shared_ptr<const StillSurface<3>>> still = {};
   /// Segment-integrated contact: the two nodes of each patch, and the nodes at which the side ends. Vertices of a
   /// polyline count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<std::vector<int>> facets = {};
@@ -61,20 +67,20 @@ struct MasterSurface {
   /// Its patches. pre: the model has D dimensions.
   template <int D>
   const Surface<D>& patches() const {
-    return std::get<Surface<D>>(surface);
+    return *std::get<std::shared_ptr<const Surface<D>>>(surface);
   }
   /// Whether a patch joins all of its neighbours without a corner or a crease.
   bool goes_on_around(int patch) const {
-    return std::visit([patch](const auto& patches) { return patches[patch].goes_on_around(); }, surface);
+    return std::visit([patch](const auto& patches) { return (*patches)[patch].goes_on_around(); }, surface);
   }
   /// The vertices of a patch; no_vertex for one that it lacks.
   std::span<const int> vertices(int patch) const {
-    return std::visit([&](const auto& patches) { return std::span<const int>(patches[patch].vertices); }, surface);
+    return std::visit([&](const auto& patches) { return std::span<const int>((*patches)[patch].vertices); }, surface);
   }
   /// Whether it has patches that are not smooth.
   bool has_facets() const {
     const auto is_facet = [](const auto& patch) { return !patch.is_smooth(); };
-    return std::visit([&](const auto& all) { return std::any_of(all.begin(), all.end(), is_facet); }, surface);
+    return std::visit([&](const auto& all) { return std::any_of(all->begin(), all->end(), is_facet); }, surface);
   }
   /// Whether the last patch of a curve ends where the first begins.
   bool is_loop() const { return patches<2>().back().across[1] == 0; }

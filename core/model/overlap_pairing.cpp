@@ -33,11 +33,11 @@ OverlapSearch overlap_search(const Model& model, const Points<double>& points, c
   if (pairing.obstacle < 0) return {points, side_facets(pairing.master)};
   const Obstacle& obstacle = model.scene.obstacles[pairing.obstacle];
   if (!has_facets(obstacle.shape)) return {points, {}};
-  const auto vertices = vertices_of<3>(obstacle, model.scene.as<double>());
+  const auto vertices = vertices_of(obstacle.shape, model.scene.as<double>());
   Points<double> all(3, points.cols() + vertices.cols());
   all << points, vertices;
   SideSet facets;
-  facets.facets = facets_of(obstacle);
+  facets.facets = facets_of(obstacle.shape);
   for (auto& facet : facets.facets)
     for (int& vertex : facet) vertex += model.node_count;
   return {std::move(all), side_facets(facets)};

@@ -19,9 +19,9 @@
 namespace stickslip {
 namespace {
 
-/// What a contact is searched in: the facets of a master side or of a polyline; empty against another obstacle.
+/// What a contact is searched in: the facets of a master side, or of an obstacle; empty of an obstacle without facets.
 struct Facets {
-  Points<double> points;  ///< of the model's nodes and, behind these, the vertices of the polyline
+  Points<double> points;  ///< of the model's nodes and, behind these, the vertices of the obstacle
   std::vector<std::vector<int>> facets;
   FacetSearch search;
   Facets(Points<double> at, std::vector<std::vector<int>> of)
@@ -119,10 +119,10 @@ Facets facets_of_master(const Model& model, const Points<double>& points, const 
   if (pairing.obstacle < 0) return {points, pairing.master.facets};
   const Obstacle& obstacle = model.scene.obstacles[pairing.obstacle];
   if (!has_facets(obstacle.shape)) return {points, {}};
-  const auto vertices = vertices_of<2>(obstacle, model.scene.as<double>());
+  const auto vertices = vertices_of(obstacle.shape, model.scene.as<double>());
   Points<double> all(2, points.cols() + vertices.cols());
   all << points, vertices;
-  auto facets = facets_of(obstacle);
+  auto facets = facets_of(obstacle.shape);
   for (auto& facet : facets)
     for (int& vertex : facet) vertex += model.node_count;
   return {std::move(all), std::move(facets)};
@@ -213,6 +213,9 @@ void pair_along_surface(Model& model, const Points<double>& points, const Pairin
   auto [master, places] = make_master<D>(model, points, pairing.index, pairing.obstacle, pairing.master.facets);
   const auto shape = model.bodies[pairing.slave.body].mesh.shape;
   const SurfaceSearch<D> search(master.template patches<D>(), places);
+  if (model.scene.finite_strain && master.is_rigid())
+    master.still =
+        std::make_shared<const StillSurface<D>>(std::get<std::shared_ptr<const Surface<D>>>(master.surface), places);
   std::optional<OwnVertices<D>> own;
   if (model.scene.contacts[pairing.index].is_of_itself()) own.emplace(master, places);
   for (int node : pairing.slave.nodes) {

@@ -11,21 +11,15 @@ namespace stickslip::detail {
 
 /// Initial position of a vertex of an obstacle that has facets.
 template <int D, class T>
-Vec<T, D> start_of_vertex(const Obstacle& obstacle, const Numbers<T>& numbers, int vertex) {
-  if constexpr (D == 2) {
-    const auto& x = std::get<Polyline>(obstacle.shape).points[vertex];
-    return {numbers(x[0]), numbers(x[1])};
-  } else {
-    const auto x = std::get<RigidFacets>(obstacle.shape).vertices.col(vertex);
-    return {T(x[0]), T(x[1]), T(x[2])};
-  }
+Vec<T, D> start_of_vertex(const Slots<T>& slots, int obstacle, int vertex) {
+  return slots.vertices[obstacle].template block<D, 1>(0, vertex);
 }
 
 /// Initial position of a node, or of a vertex of the obstacle, if that has facets (core/contact/segment.hpp).
 template <int D, class T>
 Vec<T, D> start_of(const Model& model, int obstacle, const Slots<T>& slots, int node) {
   if (node < model.node_count) return slots.points.template block<D, 1>(0, node);
-  return start_of_vertex<D>(model.scene.obstacles[obstacle], slots.numbers, node - model.node_count);
+  return start_of_vertex<D>(slots, obstacle, node - model.node_count);
 }
 
 /// Rigid motion of an obstacle: a turn about its centre, then a shift.
@@ -99,8 +93,7 @@ struct Positions {
   /// A vertex of an obstacle that has facets.
   template <int D = 2>
   Placed<U, T, D> vertex_of_obstacle(int obstacle, int number) const {
-    const Vec<T, D> X = start_of_vertex<D>(model.scene.obstacles[obstacle], slots.numbers, number),
-                    u = frame<D>(obstacle).displacement(X);
+    const Vec<T, D> X = start_of_vertex<D>(slots, obstacle, number), u = frame<D>(obstacle).displacement(X);
     return {X, u.template cast<U>()};
   }
   /// A vertex of a surface.
@@ -113,7 +106,7 @@ struct Positions {
     else
       return {X, displacement(surface.places[number])};
   }
-  /// A node of a body, or a vertex of the polyline that is the obstacle, numbered behind them.
+  /// A node of a body, or a vertex of the obstacle, numbered behind them.
   Placed<U, T> node(int obstacle, int number) const {
     if (number >= model.node_count) return vertex_of_obstacle(obstacle, number - model.node_count);
     const Vec<T, 2> X = point2(slots.points, number);

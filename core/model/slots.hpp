@@ -46,6 +46,8 @@ struct Slots {
   Points<T> points;                        ///< D x nodes
   std::vector<BodyLaw<T>> laws;            ///< per body
   std::vector<Depth<T>> depths;            ///< per body
+  std::vector<Points<T>> vertices;         ///< per obstacle: where its vertices are at the start, D x vertices, length;
+                                           ///< no entry: none has any
   std::vector<PointGeometry<T>> geometry;  ///< per contact point
   std::vector<T> stiffness;                ///< per contact point: local nodal stiffness k_i (force per length)
   std::vector<FrictionLaw<T>> friction;    ///< per contact; not read if frictionless

@@ -236,6 +236,9 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
                     const std::vector<double>* stiffness) {
   Slots<T> slots = make_body_slots(model, numbers, std::move(points));
   slots.normals_turn = model.effects.normals_turn;
+  const auto& obstacles = model.scene.obstacles;
+  if (std::any_of(obstacles.begin(), obstacles.end(), [](const auto& o) { return has_facets(o.shape); }))
+    for (const auto& obstacle : obstacles) slots.vertices.push_back(vertices_of(obstacle.shape, numbers));
   for (const auto& contact : model.scene.contacts)
     slots.friction.push_back(contact.friction ? contact.friction->template as<T>(numbers) : FrictionLaw<T>());
   if (std::any_of(model.surfaces.begin(), model.surfaces.end(),
@@ -254,7 +257,6 @@ Slots<T> make_slots(const Model& model, const Numbers<T>& numbers, Points<T> poi
     slots.stiffness = contact_stiffness(model, slots);
   for (int l = 0; l < static_cast<int>(model.scene.loads.size()); ++l)
     slots.loads.emplace_back(load_vector(model, l, slots));
-  const auto& obstacles = model.scene.obstacles;
   const bool turns =
       std::any_of(obstacles.begin(), obstacles.end(), [](const auto& o) { return o.rotate.has_value(); });
   if (turns && !model.effects.current_geometry)

@@ -196,6 +196,8 @@ class Evaluator {
     const double largest = largest_nodal_norm(engine_.compact(Vector<T>(step.col(0))), task_.contact.model.dimension);
     return largest > longest_step_ ? longest_step_ / largest : 1;
   }
+  /// Largest force of the run's equilibria so far.
+  double force_of_run() const { return account_.scales.force; }
   /// What closed points face from iterate to iterate.
   KeptPatches<T>& patches() { return patches_; }
   /// Replaces the rows of an evaluation by those in given branches.

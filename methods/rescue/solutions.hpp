@@ -31,7 +31,7 @@
 #include "core/engine/engine.hpp"
 #include "core/model/contact_assembly.hpp"
 #include "core/model/loading.hpp"
-#include "methods/stepping/increment.hpp"
+#include "methods/rescue/uniqueness.hpp"
 
 namespace stickslip {
 

@@ -9,18 +9,10 @@
 #include "core/model/facings.hpp"
 #include "methods/newton/equilibrium.hpp"
 #include "methods/newton/regularisation.hpp"
+#include "methods/rescue/uniqueness.hpp"
 #include "methods/stepping/free_bodies.hpp"
 
 namespace stickslip {
-
-/// What is known of the number of an increment's solutions (methods/rescue/solutions.hpp).
-enum class Uniqueness {
-  unique,    ///< no combination of branches has a negative determinant; or this is not known, as bodies can move
-             ///< although all points stick
-  critical,  ///< none is negative, and some vanish, though no constraints repeat one another: under some loads
-             ///< solutions are a continuum
-  several    ///< some are negative: under some loads there are several
-};
 
 /// What becomes of a step that finds no solution.
 enum class Steps {

@@ -3,7 +3,8 @@
 
 #include <stdexcept>
 
-#include "methods/stepping/solve.hpp"
+#include "methods/stepping/checkpoints.hpp"
+#include "methods/stepping/step.hpp"
 
 namespace stickslip {
 

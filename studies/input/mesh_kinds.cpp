@@ -101,7 +101,8 @@ std::optional<MeshDescription> read_gmsh(const JsonNode& mesh, const JsonNode& n
     mesh.error(R"(the key "body" is missing: the physical name of a surface, in space of a volume, in the mesh file)");
   const auto body_name = body ? body->text() : std::nullopt;
   const MeshFile* file = name ? mesh_file(node, *name, reading) : nullptr;
-  if (!file || !body_name) return std::nullopt;
+  if (file && !file->content.no_body.empty()) reading.diagnostics.error({{}, "", file->content.no_body});
+  if (!file || !body_name || !file->content.no_body.empty()) return std::nullopt;
   const auto splits = mesh.find("split");
   for (const ImportedMesh& each : file->content.bodies)
     if (each.body == *body_name) return splits ? split_often(each, *splits) : each;
@@ -156,6 +157,24 @@ std::optional<MeshDescription> read_mesh(const JsonNode& node, SceneReading& rea
     return std::nullopt;
   }
   return from_file ? read_gmsh(node, mesh, reading) : generator->read(mesh, reading);
+}
+
+std::optional<ImportedMesh> read_loose_side(const JsonNode& mesh, const JsonNode& side, SceneReading& reading) {
+  const auto node = mesh.find("gmsh");
+  const auto name = node->text(), of_side = side.text();
+  const MeshFile* file = name ? mesh_file(*node, *name, reading) : nullptr;
+  if (const auto splits = mesh.find("split")) splits->error_at_key("belongs to a body of the file");
+  if (!file || !of_side || !file->content.errors.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const ImportedMesh& each : file->content.loose) {
+    names.push_back(each.mesh.sides.begin()->first);
+    if (names.back() == *of_side) return each;
+  }
+  const std::string kind = reading.dimension() == 3 ? "physical surface" : "physical curve";
+  side.error("is " + in_quotes(*of_side) + "; the mesh has no " + kind + " of this name that is on no body" +
+             (names.empty() ? "" : ", but " + listed(names)) +
+             "; for a side of a body the mesh needs the key \"body\"");
+  return std::nullopt;
 }
 
 Schema plane_mesh_schema() {

@@ -1,11 +1,14 @@
 #include "studies/input/obstacle_kinds.hpp"
 
+#include <stdexcept>
 #include <tuple>
 #include <type_traits>
 
 #include "core/mesh/stl_reader.hpp"
 #include "studies/input/described.hpp"
 #include "studies/input/file_objects.hpp"
+#include "studies/input/made_mesh.hpp"
+#include "studies/input/mesh_kinds.hpp"
 #include "studies/io/json_pointer.hpp"
 
 namespace stickslip {
@@ -87,6 +90,48 @@ std::optional<RigidSurface> read_stl_file(const JsonNode& node, SceneReading& re
   return facets;
 }
 
+Schema mesh_side_schema() {
+  return Schema::parse(R"json({
+  "description": "a side of a mesh, held rigid", "type": "object", "required": ["mesh", "side"],
+  "examples": [{"mesh": {"disk": {"center": [0, -1], "radius": 1, "cells": [8, 2]}}, "side": "arc"}], "additionalProperties": false,
+  "properties": {
+    "mesh": {
+      "description": "as of a body; the solid is inside of it. Of gmsh without a body: a physical surface, in the plane a curve, that is on no body; the solid is behind faces that are counter-clockwise seen from outside, in the plane on the left", "$ref": "#/$defs/mesh",
+      "examples": [{"gmsh": "tool.msh", "body": "tool"}]},
+    "side": {
+      "description": "of this mesh, or an expression of several, without the name of a body", "title": "SIDE",
+      "type": "string", "examples": ["arc"]}}})json");
+}
+
+std::optional<RigidSurface> read_mesh_side(const JsonNode& node, SceneReading& reading) {
+  static const Keys keys = keys_of(mesh_side_schema());
+  if (!node.is_object(keys)) return std::nullopt;
+  const auto mesh_node = node.find("mesh"), side = node.find("side");
+  if (mesh_node && side && mesh_node->value().is_object() && mesh_node->find("gmsh") && !mesh_node->find("body")) {
+    const auto loose = read_loose_side(*mesh_node, *side, reading);
+    if (!loose) return std::nullopt;
+    return MeshSide(*loose, loose->mesh, side->value());
+  }
+  const auto description = mesh_node ? read_mesh(*mesh_node, reading) : std::nullopt;
+  const auto name = side ? side->text() : std::nullopt;
+  if (!description || !name) return std::nullopt;
+  if (filling_of(*description) != Filling::continuum) {
+    mesh_node->error("is " + shown(mesh_node->value()) +
+                     ", which fills no region; a rigid side needs a solid behind it");
+    return std::nullopt;
+  }
+  const double nodes = reading.nodes;  // those of a rigid mesh have no displacements
+  auto mesh = made_mesh(node, *mesh_node, *description, "", reading);
+  reading.nodes = nodes;
+  if (!mesh) return std::nullopt;
+  try {
+    return MeshSide(*description, *std::move(mesh), *name);
+  } catch (const std::invalid_argument& fault) {
+    side->error("is " + in_quotes(*name) + "; " + fault.what());
+    return std::nullopt;
+  }
+}
+
 json value_json(const Number& number) { return number.value; }
 json value_json(bool flag) { return flag; }
 template <class Vector>
@@ -97,13 +142,13 @@ json value_json(const Vector& numbers) {
 }
 
 template <Described S>
-json as_drawn(const S& surface) {
+json as_drawn(const S& surface, const Numbers<double>&) {
   json values;
   std::apply([&](const auto&... of) { ((values[of.key] = value_json(surface.*of.member)), ...); }, S::keys());
   return {{S::key, values}};
 }
 
-json as_drawn(const Polyline& polyline) {
+json as_drawn(const Polyline& polyline, const Numbers<double>&) {
   json vertices = json::array();
   for (const auto& x : polyline.points) vertices.push_back(value_json(x));
   if (polyline.closed) vertices.push_back(vertices.front());
@@ -111,10 +156,26 @@ json as_drawn(const Polyline& polyline) {
 }
 
 /// (Pictures of space show bodies alone.)
-json as_drawn(const RigidFacets&) { return {{"stl", json::object()}}; }
+json as_drawn(const RigidFacets&, const Numbers<double>&) { return {{"stl", json::object()}}; }
+
+json as_drawn(const MeshSide& side, const Numbers<double>& numbers) {
+  json points = json::array();
+  if (side.mesh.dimension == 2) {
+    const Points<double> vertices = vertices_of(side, numbers);
+    const auto add = [&](int v) { points.push_back({vertices(0, v), vertices(1, v)}); };
+    for (std::size_t f = 0; f < side.facets.size(); ++f) {
+      const bool goes_on = f > 0 && side.facets[f - 1][1] == side.facets[f][0];
+      if (!goes_on && f > 0) points.push_back(nullptr);
+      if (!goes_on) add(side.facets[f][0]);
+      add(side.facets[f][1]);
+    }
+  }
+  return {{"polyline", {{"points", points}}}};
+}
 
 ObstacleKind entry_of(std::type_identity<Polyline>) { return {"polyline", polyline_schema, read_polyline}; }
 ObstacleKind entry_of(std::type_identity<RigidFacets>) { return {"stl", stl_schema, read_stl_file}; }
+ObstacleKind entry_of(std::type_identity<MeshSide>) { return {"mesh_side", mesh_side_schema, read_mesh_side}; }
 
 template <class S>
 ObstacleKind obstacle_kind(std::type_identity<S>) {
@@ -138,8 +199,8 @@ const std::vector<ObstacleKind>& obstacle_kinds() {
   return kinds;
 }
 
-json drawn(const RigidSurface& surface) {
-  return std::visit([](const auto& shape) { return as_drawn(shape); }, surface);
+json drawn(const RigidSurface& surface, const Numbers<double>& numbers) {
+  return std::visit([&](const auto& shape) { return as_drawn(shape, numbers); }, surface);
 }
 
 }  // namespace stickslip

@@ -15,8 +15,9 @@ struct ObstacleKind {
   bool is_in_plane = false, is_in_space = false;                                     ///< where it is made for
 };
 
-/// {"KIND": {...}} of picture.json, where it stands at the start. The report draws planes, circles and polylines.
-nlohmann::json drawn(const RigidSurface& surface);
+/// {"KIND": {...}} of picture.json, where it stands at the start. The report draws planes, circles and
+/// polylines; null among the points of a polyline is between two pieces of it.
+nlohmann::json drawn(const RigidSurface& surface, const Numbers<double>& numbers);
 
 /// All, in the order of RigidSurface.
 const std::vector<ObstacleKind>& obstacle_kinds();

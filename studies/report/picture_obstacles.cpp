@@ -69,7 +69,10 @@ void hatch(const Path& shape, Drawing& drawing) {
 void add_line(const json& vertices, const Motion& motion, const Frame& frame, Path& path) {
   bool is_first = true;
   for (const auto& vertex : vertices) {
-    if (!is_point(vertex)) continue;
+    if (!is_point(vertex)) {  // the next piece
+      is_first = true;
+      continue;
+    }
     const Point p = motion.place(to_point(vertex));
     std::exchange(is_first, false) ? path.move(frame.x(p.x), frame.y(p.y)) : path.line(frame.x(p.x), frame.y(p.y));
   }

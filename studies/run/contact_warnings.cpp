@@ -81,7 +81,7 @@ void find_master_inside(const Problem& problem, const State<double>& state, doub
   const SideCurve slave = curve_of_side(surface_of(model, slots.points, sides.slave), points, contact, false);
   if (slave.patches.empty()) return;
   const SideCurve master = obstacle
-                               ? curve_of_polyline(problem, *obstacle, contact, time)
+                               ? curve_of_obstacle(problem, *obstacle, contact, time)
                                : curve_of_side(surface_of(model, slots.points, sides.master), points, contact, true);
   const auto press = press_and_penetration(problem, state.contact, c);
   double stiffness = 0;

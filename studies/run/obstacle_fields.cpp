@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/model/master_surface.hpp"
 #include "core/model/positions.hpp"
 #include "studies/input/obstacle_kinds.hpp"
 #include "studies/run/side_curve.hpp"
@@ -33,44 +32,46 @@ std::vector<Eigen::Vector2d> outline_of(const json& drawn, const Points<double>&
       out.emplace_back(point(shape["center"]) +
                        shape["radius"].get<double>() * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
     }
-  } else if (kind == "polyline") {
-    for (const auto& vertex : shape["points"]) out.push_back(point(vertex));
   }
   return out;
 }
 
-/// The facets of obstacles in space; others have none.
-VtuData facets_in_space(const Problem& problem, double time) {
-  const auto& obstacles = problem.model.scene.obstacles;
+/// What is written of obstacles, one after the other.
+struct Lines {
   VtuData data;
-  data.time = time;
-  data.points.resize(3, 0);
-  Matrix<double> displacements(3, 0);
-  std::vector<double> owner;
-  for (std::size_t o = 0; o < obstacles.size(); ++o) {
-    if (!has_facets(obstacles[o].shape)) continue;
-    const auto vertices = vertices_of<3>(obstacles[o], problem.slots.numbers);
-    const auto frame = detail::frame_of_obstacle<3>(obstacles[o], time, problem.slots.numbers);
+  std::vector<double> owner = {};
+
+  /// Adds points of obstacle `o`, D x points, and the cells between them, by these points.
+  void add(const Problem& problem, std::size_t o, const Points<double>& points,
+           const std::vector<std::vector<int>>& cells) {
     const auto first = static_cast<int>(data.points.cols());
-    data.points.conservativeResize(3, first + vertices.cols());
-    displacements.conservativeResize(3, first + vertices.cols());
-    for (Eigen::Index v = 0; v < vertices.cols(); ++v) {
-      const Vec<double, 3> X = vertices.col(v);
-      data.points.col(first + v) = X;
-      displacements.col(first + v) = frame.displacement(X);
-    }
-    for (const auto& facet : facets_of(obstacles[o])) {
-      data.cells.push_back(facet.size() == 3 ? VtuCell::triangle : VtuCell::quad);
-      for (int vertex : facet) data.connectivity.push_back(first + vertex);
+    const Eigen::Index dimension = points.rows(), count = first + points.cols();
+    data.points.conservativeResize(dimension, count);
+    data.points.rightCols(points.cols()) = points;
+    displacements_.conservativeResize(dimension, count);
+    for (Eigen::Index p = 0; p < points.cols(); ++p)
+      displacements_.col(first + p) = displacement(problem, problem.model.scene.obstacles[o], points.col(p));
+    for (const auto& cell : cells) {
+      data.cells.push_back(cell.size() == 2 ? VtuCell::line : cell.size() == 3 ? VtuCell::triangle : VtuCell::quad);
+      for (const int point : cell) data.connectivity.push_back(first + point);
       owner.push_back(static_cast<double>(o));
     }
   }
-  data.point_fields.push_back({"displacement", displacements});
-  data.cell_fields.push_back(
-      {"obstacle",
-       Eigen::Map<const Vector<double>>(owner.data(), static_cast<Eigen::Index>(owner.size())).transpose()});
-  return data;
-}
+  VtuData finished() {
+    data.point_fields.push_back({"displacement", std::move(displacements_)});
+    data.cell_fields.push_back(
+        {"obstacle",
+         Eigen::Map<const Vector<double>>(owner.data(), static_cast<Eigen::Index>(owner.size())).transpose()});
+    return std::move(data);
+  }
+
+ private:
+  Vector<double> displacement(const Problem& problem, const Obstacle& obstacle, const Vector<double>& X) const {
+    if (X.size() == 2) return obstacle_displacement(problem, obstacle, X, data.time);
+    return detail::frame_of_obstacle<3>(obstacle, data.time, problem.slots.numbers).displacement(Vec<double, 3>(X));
+  }
+  Matrix<double> displacements_ = {};
+};
 
 }  // namespace
 
@@ -81,36 +82,25 @@ bool has_obstacle_fields(const Model& model) {
 }
 
 VtuData obstacle_fields(const Problem& problem, double time) {
-  const auto& scene = problem.model.scene;
-  if (problem.model.dimension == 3) return facets_in_space(problem, time);
-  VtuData data;
-  data.time = time;
-  std::vector<Eigen::Vector2d> points, displacements;
-  std::vector<double> owner;
-  for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
-    const auto outline = outline_of(drawn(scene.obstacles[o].shape), problem.slots.points);
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-      if (i > 0) {
-        data.cells.push_back(VtuCell::line);
-        const int last = static_cast<int>(points.size());
-        data.connectivity.insert(data.connectivity.end(), {last - 1, last});
-        owner.push_back(static_cast<double>(o));
+  const auto& obstacles = problem.model.scene.obstacles;
+  Lines lines;
+  lines.data.time = time;
+  lines.data.points.resize(problem.model.dimension, 0);
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    if (has_facets(obstacles[o].shape)) {
+      lines.add(problem, o, problem.slots.vertices[o], facets_of(obstacles[o].shape));
+    } else if (problem.model.dimension == 2) {
+      const auto outline = outline_of(drawn(obstacles[o].shape, problem.slots.numbers), problem.slots.points);
+      Points<double> points(2, static_cast<Eigen::Index>(outline.size()));
+      std::vector<std::vector<int>> cells;
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        points.col(static_cast<Eigen::Index>(i)) = outline[i];
+        if (i > 0) cells.push_back({static_cast<int>(i) - 1, static_cast<int>(i)});
       }
-      points.push_back(outline[i]);
-      displacements.push_back(obstacle_displacement(problem, scene.obstacles[o], outline[i], time));
+      lines.add(problem, o, points, cells);
     }
   }
-  const auto columns = [](const std::vector<Eigen::Vector2d>& list) {
-    Matrix<double> out(2, static_cast<Eigen::Index>(list.size()));
-    for (std::size_t i = 0; i < list.size(); ++i) out.col(static_cast<Eigen::Index>(i)) = list[i];
-    return out;
-  };
-  data.points = columns(points);
-  data.point_fields.push_back({"displacement", columns(displacements)});
-  data.cell_fields.push_back(
-      {"obstacle",
-       Eigen::Map<const Vector<double>>(owner.data(), static_cast<Eigen::Index>(owner.size())).transpose()});
-  return data;
+  return lines.finished();
 }
 
 }  // namespace stickslip

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "core/model/master_surface.hpp"
-
 namespace stickslip {
 namespace {
 
@@ -98,10 +96,11 @@ Wires wires(const Cylinder& cylinder, const Numbers<double>& numbers, const Poin
 }
 
 /// Each edge once; of many some.
-Wires edge_wires(const Obstacle& obstacle, const Numbers<double>& numbers) {
-  const auto vertices = vertices_of<3>(obstacle, numbers);
+template <class Shape>
+Wires edge_wires(const Shape& shape, const Numbers<double>& numbers) {
+  const auto vertices = vertices_of(shape, numbers);
   std::set<std::pair<int, int>> edges;
-  for (const auto& facet : facets_of(obstacle))
+  for (const auto& facet : facets_of(shape))
     for (std::size_t k = 0; k < facet.size(); ++k) edges.insert(std::minmax(facet[k], facet[(k + 1) % facet.size()]));
   constexpr std::size_t most = 3000;
   const std::size_t stride = (edges.size() + most - 1) / most;
@@ -117,8 +116,8 @@ Wires edge_wires(const Obstacle& obstacle, const Numbers<double>& numbers) {
 Wires wires_of(const Obstacle& obstacle, const Numbers<double>& numbers, const Points<double>& bodies) {
   return std::visit(
       [&]<class Shape>(const Shape& shape) -> Wires {
-        if constexpr (std::is_same_v<Shape, RigidFacets>)
-          return edge_wires(obstacle, numbers);
+        if constexpr (requires { Shape::has_facets; })
+          return edge_wires(shape, numbers);
         else if constexpr (requires { wires(shape, numbers, bodies); })
           return wires(shape, numbers, bodies);
         else

@@ -29,7 +29,7 @@ json numbers_json(const std::vector<Number>& numbers) {
 /// The shape at the start, and what it moved by until `time`: a displacement, and where it rotates an angle in degrees
 /// about a center.
 json obstacle_json(const Obstacle& obstacle, double time, bool finite, const Numbers<double>& numbers) {
-  json shape = drawn(obstacle.shape);
+  json shape = drawn(obstacle.shape, numbers);
   json moved = {{"by", {0.0, 0.0}}};
   for (const auto& [axis, table] : obstacle.move)
     if (axis < 'z') moved["by"][axis == 'x' ? 0 : 1] = evaluate(table, time, numbers);

@@ -36,16 +36,11 @@ SideCurve curve_of_side(const SideSet& side, const Points<double>& points, const
   return curve;
 }
 
-SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, const Contact& contact, double time) {
-  const auto& polyline = std::get<Polyline>(obstacle.shape);
-  const int count = static_cast<int>(polyline.points.size());
+SideCurve curve_of_obstacle(const Problem& problem, const Obstacle& obstacle, const Contact& contact, double time) {
   SideCurve curve;
-  curve.places.resize(2, count);
-  for (int v = 0; v < count; ++v) {
-    const PlanePlace x(problem.slots.numbers(polyline.points[v][0]), problem.slots.numbers(polyline.points[v][1]));
-    curve.places.col(v) = x + obstacle_displacement(problem, obstacle, x, time);
-  }
-  curve.patches = make_surface<2>(facets_of(obstacle), contact.smoothing, contact.corner, curve.places);
+  curve.places = vertices_of(obstacle.shape, problem.slots.numbers);
+  for (auto x : curve.places.colwise()) x += obstacle_displacement(problem, obstacle, x, time);
+  curve.patches = make_surface<2>(facets_of(obstacle.shape), contact.smoothing, contact.corner, curve.places);
   return curve;
 }
 

@@ -1,5 +1,5 @@
-/// Sides and polylines as curves of their own, for searches of what a contact does not look for itself; and where
-/// obstacles are.
+/// Sides and obstacles of facets as curves of their own, for searches of what a contact does not look for itself; and
+/// where obstacles are.
 #pragma once
 
 #include <vector>
@@ -12,9 +12,9 @@ namespace stickslip {
 
 using PlanePlace = Vec<double, 2>;
 
-/// A side, or a polyline, as a curve at some positions: a copy, for searches of what it does not look for itself.
+/// A side, or an obstacle, as a curve at some positions: a copy, for searches of what it does not look for itself.
 struct SideCurve {
-  std::vector<int> nodes;  ///< per vertex; empty of a polyline
+  std::vector<int> nodes;  ///< per vertex; empty of an obstacle
   Eigen::Matrix2Xd places;
   Surface<2> patches;
 
@@ -29,8 +29,8 @@ struct SideCurve {
 
 SideCurve curve_of_side(const SideSet& side, const Points<double>& points, const Contact& contact, bool smooth);
 
-/// pre: the obstacle is a polyline
-SideCurve curve_of_polyline(const Problem& problem, const Obstacle& obstacle, const Contact& contact, double time);
+/// pre: the obstacle has facets, and the space is plane
+SideCurve curve_of_obstacle(const Problem& problem, const Obstacle& obstacle, const Contact& contact, double time);
 
 /// Displacement, length, of the place x of an obstacle of the plane at a time.
 PlanePlace obstacle_displacement(const Problem& problem, const Obstacle& obstacle, const PlanePlace& x, double time);

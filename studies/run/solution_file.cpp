@@ -114,12 +114,12 @@ void write_solution_mesh(SolutionWriter& out, const Problem& problem) {
   }
   out.raw("}");
   first = true;
-  for (const auto& obstacle : model.scene.obstacles) {  // (those of the plane stand in the scene)
-    const auto* surface = std::get_if<RigidFacets>(&obstacle.shape);
-    if (!surface) continue;
-    out.raw(std::exchange(first, false) ? R"(,"obstacles":{)" : ",").raw("\n").quoted(obstacle.name);
-    out.raw(R"(:{"vertices":)").list(surface->vertices.colwise(), [&](const auto& x) { out.numbers(x); });
-    out.raw(R"(,"facets":)").list(surface->facets, [&](const auto& facet) { out.numbers(facet); }).raw("}");
+  for (std::size_t o = 0; o < model.scene.obstacles.size(); ++o) {
+    const auto& [name, shape, move, rotate] = model.scene.obstacles[o];
+    if (!has_facets(shape) || std::holds_alternative<Polyline>(shape)) continue;  // (a polyline stands in the scene)
+    out.raw(std::exchange(first, false) ? R"(,"obstacles":{)" : ",").raw("\n").quoted(name);
+    out.raw(R"(:{"vertices":)").list(slots.vertices[o].colwise(), [&](const auto& x) { out.numbers(x); });
+    out.raw(R"(,"facets":)").list(facets_of(shape), [&](const auto& facet) { out.numbers(facet); }).raw("}");
   }
   out.raw(first ? "}" : "}}");
 }

@@ -20,9 +20,13 @@ class StartingObstacle {
  public:
   StartingObstacle(const Problem& problem, const Contact& contact, const Obstacle& obstacle)
       : numbers_(problem.slots.numbers), shape_(obstacle.shape) {
-    if (!std::holds_alternative<Polyline>(shape_)) return;
-    polyline_ = curve_of_polyline(problem, obstacle, contact, 0);
-    search_.emplace(polyline_.patches, polyline_.places);
+    if (!has_facets(shape_)) return;
+    if (problem.model.dimension == 3) {
+      faces_.emplace(vertices_of(shape_, numbers_), facets_of(shape_));
+      return;
+    }
+    curve_ = curve_of_obstacle(problem, obstacle, contact, 0);
+    search_.emplace(curve_.patches, curve_.places);
   }
 
   struct Seen {
@@ -30,17 +34,26 @@ class StartingObstacle {
     double gap = 0;
     bool is_inside = false;  ///< of its solid, by more than rounding
   };
-  /// From a place x; none past free ends, and where all places are equally near. Of facets in space none.
+  /// From a place x; none past free ends, and where all places are equally near.
   std::optional<Seen> from(const Vector<double>& x) const {
     std::optional<Seen> seen;
     if (search_) {
       const PlanePlace place = x.head<2>();
       const Facing facing = search_->facing(place, PlanePlace::Zero());
       if (facing.patch == no_patch) return std::nullopt;
-      const auto foot = foot_on_patch<double>(polyline_.patches[facing.patch], facing.at, place, polyline_.position());
+      const auto foot = foot_on_patch<double>(curve_.patches[facing.patch], facing.at, place, curve_.position());
       seen = {foot.normal, foot.gap};
+    } else if (faces_) {
+      const Vec<double, 3> place = x;
+      const auto near = faces_->closest(place, Vec<double, 3>::Zero());
+      if (near.empty()) return std::nullopt;
+      std::vector<int> nodes{no_vertex};  // x, then those of the faces
+      for (const auto& face : near) nodes.insert(nodes.end(), face.nodes.begin(), face.nodes.begin() + face.corners);
+      const auto position = [&](int vertex) { return faces_->position(vertex); };
+      const auto at = against_faces<double>(place, near, nodes, position);
+      seen = {at.normal, at.gap};
     } else {
-      if (has_facets(shape_) || ambiguity(x, shape_, numbers_)) return std::nullopt;
+      if (ambiguity(x, shape_, numbers_)) return std::nullopt;
       const auto at = against_rigid<double>(x, shape_, numbers_);
       seen = {at.normal, at.gap};
     }
@@ -51,8 +64,9 @@ class StartingObstacle {
  private:
   const Numbers<double>& numbers_;
   const RigidSurface& shape_;
-  SideCurve polyline_;
-  std::optional<SurfaceSearch<2>> search_;
+  SideCurve curve_;
+  std::optional<SurfaceSearch<2>> search_;  ///< of facets in the plane
+  std::optional<FaceSearch> faces_;         ///< of facets in space
 };
 
 /// How the nodes of a side stand to an obstacle: the side's outward normal to the obstacle's.

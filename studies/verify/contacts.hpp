@@ -41,7 +41,7 @@ class Contact {
     const auto rigid = scene.faces.find(sides.at("master"));
     if (body_.in_space() && segment) {
       integrate(scene.side(sides.at("slave")), sides.at("master"), rigid);
-    } else if (rigid != scene.faces.end())
+    } else if (body_.in_space() && rigid != scene.faces.end())
       faces_.emplace(rigid->second.vertices, rigid->second.faces, master_.smooth, master_.corner, true);
     else if (body_.in_space() && !master_.rigid())
       faces_.emplace(scene.points, cut_at_middles(scene.side(sides.at("master"))).edges, master_.smooth, master_.corner,
@@ -108,13 +108,14 @@ class Contact {
   };
 
   /// Whether a contact is integrated over segments. At finite strain it is by default between sides of solid bodies,
-  /// and against a polyline, of no given surface.
+  /// and against a polyline or a side of a mesh, of no given surface.
   static bool is_integrated(const Scene& scene, const Json& given, const Json& sides) {
     if (given.contains("discretization")) return given["discretization"] == "segment";
     const std::string slave = sides.at("slave");
     const Json& obstacle = part(part(scene.json, "obstacles"), sides.at("master"));
     return scene.finite && scene.dimension == 2 && !given.contains("surface") && scene.body(slave).solid() &&
-           !scene.side(slave).edges.empty() && (obstacle.empty() || obstacle.contains("polyline"));
+           !scene.side(slave).edges.empty() &&
+           (obstacle.empty() || obstacle.contains("polyline") || obstacle.contains("mesh_side"));
   }
 
   Seeker seeker(int node, const Field& x) const {

@@ -115,6 +115,10 @@ class Master {
     const Json points = part(part(obstacle, "polyline"), "points");  // the solid is on its right
     at.resize(3, std::ssize(points));
     for (int v = 0; v < std::ssize(points); ++v) at.col(v) = vec3(points[v]);
+    if (const auto made = scene.faces.find(master); made != scene.faces.end() && scene.dimension == 2) {
+      at = made->second.vertices;
+      for (const auto& ends : made->second.faces) facets.push_back({{ends.at(0), ends.at(1)}});
+    }
     for (int v = 0; v + 1 < std::ssize(points); ++v)
       facets.push_back({{v + 2 == std::ssize(points) && points.front() == points.back() ? 0 : v + 1, v}});
     for (const auto& [ends, edge] : facets) patches.push_back({{ends[0], ends[0], ends[1], ends[1]}});

@@ -288,7 +288,8 @@ inline Facets facets_of(const Side& side) {
   return facets;
 }
 
-/// Facets of an obstacle in space: three or four vertices each, the solid behind them.
+/// Facets of an obstacle of a file or a mesh: three or four vertices each, the solid behind them; in the plane two, the
+/// solid on the left.
 struct RigidFaces {
   Field vertices;  ///< at the start
   std::vector<Nodes> faces;
@@ -300,7 +301,7 @@ struct Scene {
   int dimension = 2;
   Field points;  ///< of all nodes at the start
   std::vector<Body> bodies;
-  std::map<std::string, RigidFaces> faces;  ///< of obstacles that have facets in space
+  std::map<std::string, RigidFaces> faces;  ///< of obstacles of a file or a mesh
 
   Scene(const Json& scene, const Json& mesh) : json(scene) {
     const std::string space = scene.value("space", "plane_strain");

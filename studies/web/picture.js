@@ -68,7 +68,7 @@ const Picture = (() => {
         const [x, y] = obstacle.circle.center, r = obstacle.circle.radius;
         points.push([x - r, y - r], [x + r, y + r]);
       } else if (lumped(picture))
-        points.push(...(obstacle.plane?.point.length === 2 ? [obstacle.plane.point] : obstacle.polyline?.points ?? []));
+        points.push(...(obstacle.plane?.point.length === 2 ? [obstacle.plane.point] : (obstacle.polyline?.points ?? []).filter((p) => p)));
     }
     let [low, high] = given ? [given.slice(0, 2), given.slice(2)] : box_of(points);
     const size = Math.max(high[0] - low[0], high[1] - low[1]) || 1;
@@ -159,8 +159,9 @@ const Picture = (() => {
       group.append(
           element('circle', {cx: x, cy: y, r: shape.radius * frame.scale, class: shape.inside ? 'cup' : 'solid'}));
     } else if (kind === 'polyline') {
-      const points = shape.points.map(place);
-      for (let i = 0; i + 1 < points.length; ++i) edge(points[i], points[i + 1]);
+      const points = shape.points.map((p) => p && place(p));  // null: between two pieces
+      for (let i = 0; i + 1 < points.length; ++i)
+        if (points[i] && points[i + 1]) edge(points[i], points[i + 1]);
     }
     return group;
   }

@@ -262,6 +262,27 @@ TEST(SolidBodies, ThatTurnTogetherKeepWhatTheyBearWhereTheyTouch) {
   }
 }
 
+/// A body that a support turns and that touches nothing bears nothing: what Newton's method finds are residuals alone,
+/// which are no larger beside the forces of the next iterate than beside those of the last.
+TEST(SolidBodies, ThatOnlyTurnAreSolvedInAFewIterations) {
+  for (const char* element : {"H8", "T4"}) {
+    Scene s = twisted_block(NeoHookean{1000.0, 0.3}, true, element);
+    s.contacts.clear();
+    s.obstacles.clear();
+    s.loads.clear();
+    s.parameters.clear();
+    s.responses = {scenes::response("energy", Kind::strain_energy, "")};
+    s.supports[0].move = {};
+    s.supports[0].rotate = Rotation{{0.6, 0.4, 0.8}, {0.1, 0.3, 1.0}, scenes::table({{0, 0.0}, {2, 40.0}})};
+    const auto run = scenes::run(s, MonolithicAL{});
+    ASSERT_EQ(run.trajectory.status, Status::converged) << run.trajectory.message;
+    for (std::size_t n = 0; n < run.trajectory.increments.size(); ++n) {
+      EXPECT_LE(run.trajectory.increments[n].newton, 8) << element;  // 10 degrees a step, and two to see that it rests
+      EXPECT_LE(run.value("energy", static_cast<int>(n)), 1e-16 * 1000) << element;  // a strain of 1e-8, of rounding
+    }
+  }
+}
+
 /// A block of space over rigid triangles, which go up and down, turn about a skew axis and are drawn along.
 Scene over_triangles(Smoothing smoothing) {
   Scene s = twisted_block(NeoHookean{1000.0, 0.3}, true);
@@ -282,6 +303,19 @@ Scene over_triangles(Smoothing smoothing) {
   s.obstacles[0].rotate =
       Rotation{{0.5, 0.4, -0.3}, {0.1, 0.2, 1.0}, scenes::table({{1, 0.0}, {2, scenes::parameter(s, "turned", 4.0)}})};
   s.contacts[0].smoothing = smoothing;
+  return s;
+}
+
+/// The same block over the side of a rigid ball of another mesh, whose radius and place are parameters.
+Scene over_a_mesh(Smoothing smoothing, bool finite) {
+  Scene s = over_triangles(smoothing);
+  s.finite_strain = finite;
+  if (!finite) s.bodies[0].material = LinearElastic{1000.0, 0.3};
+  BallMesh ball;
+  ball.center = {0.61, scenes::parameter(s, "aside", 0.43), -5.03};
+  ball.radius = scenes::parameter(s, "radius", 5.0);
+  ball.cells = {8, 1};
+  s.obstacles[0].shape = MeshSide(ball, make_mesh(ball, "", 3), "surface");
   return s;
 }
 
@@ -372,6 +406,17 @@ TEST(SolidBodies, OverRigidTrianglesHaveTheDerivativesOfTheOracleInBothModes) {
   for (const Method& method : {Method(penalty), scenes::finite_schemes()[1], Method(MonolithicAL{})})
     scenes::expect_derivatives_in_both_modes(few_steps(over_triangles(Smoothing::catmull_rom)), method);
   scenes::expect_derivatives_in_both_modes(few_steps(over_triangles(Smoothing::none)), MonolithicAL{});
+}
+
+TEST(SolidBodies, OverRigidSidesOfMeshesHaveTheDerivativesOfTheOracleInBothModes) {
+  // by the numbers of the mesh too
+  const auto schemes = scenes::finite_schemes();
+  for (const std::size_t k : {0U, 1U, 4U})  // one a method
+    scenes::expect_derivatives_in_both_modes(few_steps(over_a_mesh(Smoothing::catmull_rom, true)), schemes[k]);
+  const MonolithicAL monolithic;
+  scenes::expect_derivatives_in_both_modes(few_steps(over_a_mesh(Smoothing::b_spline, true)), monolithic);
+  scenes::expect_derivatives_in_both_modes(few_steps(over_a_mesh(Smoothing::none, false)), monolithic);
+  scenes::expect_derivatives_in_both_modes(few_cells(segmented(over_a_mesh(Smoothing::none, false))), monolithic);
 }
 
 TEST(SolidBodies, ThatSlideOverOneAnotherHaveTheDerivativesOfTheOracle) {

@@ -213,6 +213,15 @@ TEST(ContactWarnings, NameTheSideToTakeInSpaceToo) {
   const auto turned_ball = of_code(run(scene), WarningCode::turned_surface);
   ASSERT_EQ(turned_ball.size(), 1u);
   EXPECT_THAT(turned_ball[0].remedy, HasSubstr("look at \"inside\" of the sphere"));
+  json table = {{"mesh_side", {{"side", "bottom"}}}};
+  table["mesh_side"]["mesh"] = {{"box", {{"min", {-1, -1, -1}}, {"max", {2, 2, 0}}, {"cells", {3, 3, 1}}}}};
+  scene["obstacles"]["ground"] = table;
+  const auto wrong_side = of_code(run(scene), WarningCode::turned_surface);
+  ASSERT_EQ(wrong_side.size(), 1u);
+  EXPECT_THAT(wrong_side[0].remedy, HasSubstr("take another side of its mesh"));
+  table["mesh_side"]["side"] = "top";
+  scene["obstacles"]["ground"] = table;
+  EXPECT_TRUE(of_code(run(scene), WarningCode::turned_surface).empty());
 }
 
 /// Two blocks, one above the other, whose contact names sides that face away, or across.

@@ -244,8 +244,35 @@ def tube(draw):
             "press_on": None}
 
 
+def side_of(kind, mesh, side):
+    """A side of a generated mesh as a rigid obstacle."""
+    return {"mesh_side": {"mesh": {kind: mesh}, "side": side}}
+
+
+def tool(draw):
+    """A body on the side of a rigid mesh: a disk's, a ring's, or all sides of a block, over whose corners it slides; in
+    space a ball's, a drum's or a block's."""
+    if draw.choice([True, False]):
+        return over_tool(draw, ["ball", "drum", "block"])
+    radius, cells = draw.uniform(0.4, 4), draw.whole(4, 24)
+    disk = {"center": [0, -radius], "radius": radius, "cells": [cells, 1]}
+    ring = {"center": [0, -radius], "inner": radius / 2, "outer": radius, "cells": [1, 4 * cells]}
+    block = {"min": [-draw.uniform(0.4, 2), -0.5], "max": [draw.uniform(0.4, 2), 0], "cells": [cells, 2]}
+    kind = draw.choice(["disk", "ring", "box"])
+    sides = {"disk": side_of("disk", disk, "arc"), "ring": side_of("ring", ring, "outer"),
+             "box": side_of("box", block, "boundary")}
+    scene = over_obstacle(draw, sides[kind], reach=1 if kind == "box" else 0.5 * radius)
+    scene["contacts"]["c"]["on"] = "surface"
+    return scene
+
+
 def solid(draw):
     """A block or a tube of space, pressed onto a plane, a ball or a drum, dragged along two directions and twisted."""
+    return over_tool(draw, ["plane", "plane", "sphere", "cylinder"])
+
+
+def over_tool(draw, kinds):
+    """A block or a tube of space, pressed onto one of these tools, dragged along two directions and twisted."""
     width, depth, height = draw.uniform(0.8, 2), draw.uniform(0.8, 2), draw.uniform(0.5, 1.2)
     elements = ("H8", "H8_mean_dilatation", "T4")
     if draw.choice([True, False]):
@@ -260,11 +287,16 @@ def solid(draw):
         sole, held = "body.front", "body.back"
     if "j2_plastic" in body["material"]:
         body["element"] = "H8_mean_dilatation"
-    kind = draw.choice(["plane", "plane", "sphere", "cylinder"])
+    kind = draw.choice(kinds)
     radius = draw.uniform(1, 5)
+    ring = {"ring": {"center": [0, -radius], "inner": radius / 2, "outer": radius, "cells": [1, 40]}}
     tool = {"plane": {"plane": {"point": [0, 0, 0], "normal": [draw.uniform(-0.05, 0.05), draw.uniform(-0.05, 0.05), 1]}},
             "sphere": {"sphere": {"center": [0, 0, -radius], "radius": radius}},
-            "cylinder": {"cylinder": {"point": [0, 0, -radius], "axis": [draw.uniform(-1, 1), 1, 0], "radius": radius}}}
+            "cylinder": {"cylinder": {"point": [0, 0, -radius], "axis": [draw.uniform(-1, 1), 1, 0], "radius": radius}},
+            "ball": side_of("ball", {"center": [0, 0, -radius], "radius": radius, "cells": [10, 1]}, "surface"),
+            "drum": side_of("extruded", {"mesh": ring, "from": -3, "to": 3, "cells": 8}, "outer"),
+            "block": side_of("box", {"min": [-0.5 * width, -depth, -1], "max": [0.7 * width, depth, 0],
+                                     "cells": [5, 8, 2]}, "boundary")}
     contact = dict(slave=sole, master="tool", **draw.friction())
     if draw.choice([True, False]):
         tool[kind]["rotate"] = {"center": [0, 0, -radius], "axis": [draw.uniform(-0.2, 0.2), draw.uniform(-0.2, 0.2), 1],
@@ -336,8 +368,8 @@ def drag(draw):
             "supports": [{"on": "slab.bottom", "move": {"x": 0, "y": 0, "z": 0}}, support], "press_on": held}
 
 
-CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, slide, ironing, stack, rings, disks, tube, solid, pile,
-                                   drag)}
+CLASSES = {f.__name__: f for f in (plane, circle, cup, polyline, tool, slide, ironing, stack, rings, disks, tube, solid,
+                                   pile, drag)}
 
 
 def scene_of(kind, number, surface):

@@ -39,6 +39,21 @@ class RigidTriangles : public InOwnFolder {
   CaseResult run(const json& scene, const std::string& method) const {
     return cases::run(scene, {{method, json::object()}}, folder_ / "scene.json");
   }
+  /// Its steps have certificates, which none has that is of a surface elsewhere.
+  void expect_certificates(json scene) const {
+    const auto result = run(scene, "monolithic_al");
+    ASSERT_EQ(result.status(), Status::converged) << result.message();
+    scene["method"] = {{"monolithic_al", json::object()}};
+    const json solution = json::parse(solution_file(result, scene).text);
+    const auto certificate =
+        verify::certify(scene, solution.at("mesh"), solution, json::parse(result_json(result, "").dump()));
+    for (const auto& step : certificate.steps)
+      EXPECT_TRUE(step.holds()) << step.worst().law << " " << step.worst().where << " " << step.worst().share();
+    json lifted = solution;  // a surface that is elsewhere makes other forces
+    for (auto& vertex : lifted["mesh"]["obstacles"]["tool"]["vertices"])
+      vertex.back() = vertex.back().get<double>() + 1e-4;
+    EXPECT_FALSE(verify::certify(scene, lifted.at("mesh"), lifted, json::object()).holds());
+  }
   std::string faults(const json& scene) const {
     try {
       Problem(cases::read(scene, folder_ / "scene.json").scene);
@@ -151,18 +166,97 @@ TEST_F(RigidTriangles, HaveCertificates) {
       json scene = drawn_block(strain, stl);
       scene["contacts"]["sole"]["surface"] = surface;
       scene["obstacles"]["tool"]["rotate"] = skew_turn;
-      const auto result = run(scene, "monolithic_al");
-      ASSERT_EQ(result.status(), Status::converged) << result.message();
-      scene["method"] = {{"monolithic_al", json::object()}};
-      const json solution = json::parse(solution_file(result, scene).text);
-      const auto certificate =
-          verify::certify(scene, solution.at("mesh"), solution, json::parse(result_json(result, "").dump()));
-      for (const auto& step : certificate.steps)
-        EXPECT_TRUE(step.holds()) << step.worst().law << " " << step.worst().where << " " << step.worst().share();
-      json lifted = solution;  // a surface that is elsewhere makes other forces
-      for (auto& vertex : lifted["mesh"]["obstacles"]["tool"]["vertices"]) vertex[2] = vertex[2].get<double>() + 1e-4;
-      EXPECT_FALSE(verify::certify(scene, lifted.at("mesh"), lifted, json::object()).holds());
+      expect_certificates(scene);
     }
+}
+
+/// A side of a mesh, of the plane or of space.
+json side_of(const char* mesh, const char* side) {
+  return {{"mesh_side", {{"mesh", json::parse(mesh)}, {"side", side}}}};
+}
+
+/// Derivatives by a number of the mesh too: it shifts the surface as a number of the plane does.
+TEST_F(RigidTriangles, ThatAreASideOfABoxAreItsPlane) {
+  const json plane = json::parse(R"({"plane": {"point": [0, 0, -0.001], "normal": [0, 0, 1]}})");
+  const json box = side_of(R"({"box": {"min": [-2, -2, -1], "max": [3, 3, -0.001], "cells": [5, 4, 1]}})", "top");
+  for (const char* strain : {"small", "finite"})
+    for (const char* method : {"penalty", "uzawa_al", "monolithic_al"}) {
+      SCOPED_TRACE(std::string(strain) + method);
+      json on_plane = drawn_block(strain, plane), on_side = drawn_block(strain, box);
+      on_plane["parameters"]["height"] = "/obstacles/tool/plane/point/2";
+      on_side["parameters"]["height"] = "/obstacles/tool/mesh_side/mesh/box/max/2";
+      const auto expected = run(on_plane, method), found = run(on_side, method);
+      ASSERT_EQ(found.status(), Status::converged) << found.message();
+      const auto &of = found.steps.back(), &wanted = expected.steps.back();
+      EXPECT_LE(largest_entry(of.responses - wanted.responses), 1e-6);  // as above
+      const double size = largest_entry(wanted.sensitivities);
+      EXPECT_LE(largest_entry(of.sensitivities - wanted.sensitivities), 1e-6 * size);
+    }
+}
+
+TEST_F(RigidTriangles, ThatAreSidesOfMeshesHaveCertificates) {
+  const json block_in_plane = json::parse(R"({
+    "bodies": {"body": {"mesh": {"box": {"min": [0, 0], "max": [1.1, 0.6], "cells": [5, 3]}},
+                        "material": {"neo_hookean": {"E": 1000, "nu": 0.3}}}},
+    "obstacles": {"tool": {"move": {"x": [[1, 0], [2, 0.1]], "y": [[0, 0], [1, 0.02]]},
+                           "rotate": {"center": [0.3, -0.2], "angle": [[1, 0], [2, 2]]}}},
+    "contacts": {"sole": {"slave": "body.bottom", "master": "tool", "friction": 0.3}},
+    "supports": [{"on": "body.top", "move": {"x": [[1, 0], [2, 0.4]], "y": [[0, 0], [1, -0.06]]}}],
+    "strain": "finite", "time": {"legs": [[1, 2], [2, 4]]}, "responses": {}})");
+  json in_plane = block_in_plane;
+  in_plane["obstacles"]["tool"].update(
+      side_of(R"({"disk": {"center": [0.5, -3], "radius": 3, "cells": [12, 2]}})", "arc"));
+  json in_space = drawn_block(
+      "finite", side_of(R"({"ball": {"center": [0.5, 0.4, -3], "radius": 3, "cells": [12, 1]}})", "surface"));
+  in_space["obstacles"]["tool"]["rotate"] = skew_turn;
+  for (const json& scene : {in_plane, in_space}) expect_certificates(scene);
+}
+
+TEST_F(RigidTriangles, OfAMeshAreRefusedWithTheFaultOfTheMesh) {
+  const auto fault_of = [&](const char* mesh, const char* side) {
+    return faults(drawn_block("finite", side_of(mesh, side)));
+  };
+  constexpr const char* ball = R"({"ball": {"center": [0, 0, -3], "radius": 3, "cells": [4, 1]}})";
+  EXPECT_EQ(fault_of(ball, "surface"), "none");
+  EXPECT_THAT(fault_of(ball, "surfase"), testing::HasSubstr("did you mean \"surface\""));
+  EXPECT_THAT(fault_of(R"({"ball": {"center": [0, 0, -3], "radius": -3, "cells": [4, 1]}})", "surface"),
+              testing::HasSubstr("must be a number > 0"));
+  EXPECT_THAT(fault_of(R"({"box": {"min": [0, 0, 0], "max": [1, 1, 1], "cells": [1, 1, 1]}})", "left & bottom & back"),
+              testing::HasSubstr("has no facets"));
+  EXPECT_THAT(fault_of(R"({"line": {"from": [0, 0, 0], "to": [1, 0, 0], "cells": 3}})", "start"),
+              testing::HasSubstr("fills no region"));
+  EXPECT_THAT(fault_of(R"({"gmsh": "none.msh", "body": "tool"})", "face"), testing::HasSubstr("none.msh"));
+  std::ofstream(folder_ / "loose.msh") << R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+2 7 "punch"
+$EndPhysicalNames
+$Nodes
+4
+1 -2 -2 -0.001
+2 3 -2 -0.001
+3 3 3 -0.001
+4 -2 3 -0.001
+$EndNodes
+$Elements
+1
+1 3 2 7 1 1 2 3 4
+$EndElements
+)";
+  constexpr const char* loose = R"({"gmsh": "loose.msh"})";  // a surface on no body
+  EXPECT_EQ(fault_of(loose, "punch"), "none");
+  EXPECT_THAT(fault_of(loose, "punsh"), testing::HasSubstr("no physical surface of this name that is on no body, but"));
+  EXPECT_THAT(fault_of(R"({"gmsh": "loose.msh", "split": 1})", "punch"), testing::HasSubstr("belongs to a body"));
+  EXPECT_THAT(fault_of(R"({"gmsh": "loose.msh", "body": "punch"})", "punch"), testing::HasSubstr("there is no body"));
+  const auto on_loose = run(drawn_block("finite", side_of(loose, "punch")), "monolithic_al");
+  const auto on_box =
+      run(drawn_block("finite",
+                      side_of(R"({"box": {"min": [-2, -2, -1], "max": [3, 3, -0.001], "cells": [1, 1, 1]}})", "top")),
+          "monolithic_al");
+  ASSERT_EQ(on_loose.status(), Status::converged) << on_loose.message();
+  EXPECT_LE(largest_entry(on_loose.steps.back().responses - on_box.steps.back().responses), 1e-9);  // the same facet
 }
 
 TEST_F(RigidTriangles, AreScaledAndDrawnWhereTheyHaveMoved) {

@@ -134,6 +134,19 @@ TEST(MshSolids, TurnFacesOfAFileOutwardAndABodyThatIsLeftHanded) {
   EXPECT_EQ(left.bodies[0].mesh.connectivity, mesh.connectivity);
 }
 
+TEST(MshSolids, LeaveSurfacesLooseThatAreOnNoBody) {
+  const auto end = cubes.find("5 5 2 3");
+  const std::string faces = replaced(cubes.substr(0, end) + cubes.substr(cubes.find("$EndElements")), "s\n6", "s\n4");
+  const ImportResult result = read(faces);
+  EXPECT_TRUE(result.errors.empty() && result.bodies.empty());
+  ASSERT_EQ(result.loose.size(), 1u);
+  const ImportedMesh& loose = result.loose[0];
+  EXPECT_EQ(loose.mesh.element_count(), 0);
+  EXPECT_EQ(loose.points.cols(), 6);  // those of its faces alone
+  // directed as in the file: 1 2 5 4 and 2 3 6 5 are counter-clockwise seen from above
+  EXPECT_LE((vector_area(loose.points, loose.mesh.sides.at("bottom")) - Vec<double, 3>(0, 0, 2)).norm(), 1e-15);
+}
+
 struct Broken {
   std::string from, to;     // edit of the small file
   std::string line_column;  // where the fault is
@@ -189,10 +202,10 @@ TEST(MshSolids, RefuseAFileOfTheOtherSpaceAndOneWithoutABody) {
   EXPECT_NE(error.find("\"space\": \"solid\" takes this mesh"), std::string::npos) << error;
   const auto end = cubes.find("5 5 2 3");
   const std::string faces = replaced(cubes.substr(0, end) + cubes.substr(cubes.find("$EndElements")), "s\n6", "s\n4");
-  error = only_error(read(faces));
+  error = read(faces).no_body;
   EXPECT_NE(error.find("give its volume a physical name and mesh it"), std::string::npos) << error;
-  EXPECT_TRUE(read(faces, 2).errors.empty());
-  error = only_error(read(replaced(replaced(cubes, "5 5 2 3", "5 5 2 0"), "6 5 2 3", "6 5 2 0")));
+  EXPECT_TRUE(read(faces, 2).errors.empty() && read(faces, 2).no_body.empty());
+  error = read(replaced(replaced(cubes, "5 5 2 3", "5 5 2 0"), "6 5 2 3", "6 5 2 0")).no_body;
   EXPECT_NE(
       error.find("2 solid elements in no physical volume and the physical groups: point \"corner\", curve \"edge\", "
                  "surface \"bottom\""),
