@@ -54,14 +54,15 @@ std::vector<ContactPoint> paired_beside(const Model& model, const Points<Directi
   return beside.points;
 }
 
-/// Vertices of the polyline that a point faces; the first two are those of a facet. (Those of facets in space are no
-/// parameters.)
+/// Vertices of the obstacle that a point faces; the first two are those of a facet.
 std::vector<int> vertices_faced(const Model& model, const ContactPoint& point) {
   std::vector<int> vertices;
   const auto add = [&](int node) {
     if (node >= model.node_count) vertices.push_back(node - model.node_count);
   };
   std::for_each(point.corners.begin(), point.corners.end(), add);
+  for (const auto& overlap : point.overlaps)
+    std::for_each(overlap.master.nodes.begin(), overlap.master.nodes.begin() + overlap.master.corners, add);
   for (const auto& segment : point.segments) std::for_each(segment.master.begin(), segment.master.end(), add);
   if (point.surface >= 0 && model.surfaces[point.surface].is_rigid() && model.dimension == 2)
     for (int vertex : model.surfaces[point.surface].vertices(point.facing.patch))
@@ -85,7 +86,7 @@ double speed(const Model& model, const Points<Direction>& points, const Numbers<
     Points<Direction>& of = of_obstacle[point.obstacle];
     if (of.size() == 0) of = vertices_of(model.scene.obstacles[point.obstacle].shape, numbers);
     for (int v : vertices)
-      for (int i = 0; i < 2; ++i) fastest = std::max(fastest, std::abs(of(i, v).d[0]));
+      for (const Direction& x : of.col(v)) fastest = std::max(fastest, std::abs(x.d[0]));
     const Points<double> way = values(Points<Direction>(of.col(vertices[1]) - of.col(vertices[0])));
     size = std::min(size, way.norm());
   }

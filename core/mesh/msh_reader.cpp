@@ -330,8 +330,10 @@ class Import {
       const auto first = std::find_if(elements.begin(), elements.end(), lost);
       if (first == elements.end()) continue;
       if (std::all_of(elements.begin(), elements.end(), lost)) {
-        if (group.first == dimension_ - 1) add_loose(group, elements);
-        result_.notes.push_back(what + " is not on a body");
+        const bool is_loose = group.first == dimension_ - 1;
+        if (is_loose) add_loose(group, elements);
+        result_.notes.push_back(what + " is not on a body" +
+                                (is_loose ? "; an obstacle may have its shape (mesh_side)" : ""));
       } else {
         fault(*first, "element " + std::to_string((*first)->tag) + " of " + what + " is no " +
                           (dimension_ == 2 ? "" : "face, ") + "edge or node of an element of a body");

@@ -131,8 +131,10 @@ std::pair<MasterSurface, Places<D>> make_master(const Model& model, const Points
     const RigidSurface& shape = model.scene.obstacles[obstacle].shape;
     places = vertices_of(shape, model.scene.as<double>());
     facets = facets_of(shape);
-    if (contact.segment && std::holds_alternative<Polyline>(shape))  // each begins where the one before ends
-      std::reverse(facets.begin(), facets.end());
+    if constexpr (D == 2) {  // each begins where the one before ends
+      if (contact.segment && std::holds_alternative<Polyline>(shape)) std::reverse(facets.begin(), facets.end());
+      if (contact.segment && std::holds_alternative<MeshSide>(shape)) facets = ordered_facets(facets, places);
+    }
   } else {
     if constexpr (D == 2)
       if (contact.is_of_itself() || contact.segment) facets = ordered_facets(facets, points);

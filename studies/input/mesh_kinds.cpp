@@ -172,7 +172,7 @@ std::optional<ImportedMesh> read_loose_side(const JsonNode& mesh, const JsonNode
   }
   const std::string kind = reading.dimension() == 3 ? "physical surface" : "physical curve";
   side.error("is " + in_quotes(*of_side) + "; the mesh has no " + kind + " of this name that is on no body" +
-             (names.empty() ? "" : ", but " + listed(names)) +
+             (names.empty() ? "" : "; those that are: " + listed(names)) +
              "; for a side of a body the mesh needs the key \"body\"");
   return std::nullopt;
 }

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "core/mesh/stl_reader.hpp"
+#include "core/model/model.hpp"
 #include "studies/input/described.hpp"
 #include "studies/input/file_objects.hpp"
 #include "studies/input/made_mesh.hpp"
@@ -103,6 +104,16 @@ Schema mesh_side_schema() {
       "type": "string", "examples": ["arc"]}}})json");
 }
 
+/// The side of a mesh that was made; none, reported, where the mesh has no such side, or one without facets.
+std::optional<RigidSurface> side_of(const MeshDescription& description, const Mesh& mesh, const JsonNode& side) {
+  try {
+    return MeshSide(description, mesh, side.value());
+  } catch (const std::invalid_argument& fault) {
+    side.error("is " + shown(side.value()) + "; " + fault.what());
+    return std::nullopt;
+  }
+}
+
 std::optional<RigidSurface> read_mesh_side(const JsonNode& node, SceneReading& reading) {
   static const Keys keys = keys_of(mesh_side_schema());
   if (!node.is_object(keys)) return std::nullopt;
@@ -110,7 +121,11 @@ std::optional<RigidSurface> read_mesh_side(const JsonNode& node, SceneReading& r
   if (mesh_node && side && mesh_node->value().is_object() && mesh_node->find("gmsh") && !mesh_node->find("body")) {
     const auto loose = read_loose_side(*mesh_node, *side, reading);
     if (!loose) return std::nullopt;
-    return MeshSide(*loose, loose->mesh, side->value());
+    if (const auto message = radius_fault(reading.scene.space, loose->points, {loose->mesh}); !message.empty()) {
+      mesh_node->error(message);
+      return std::nullopt;
+    }
+    return side_of(*loose, loose->mesh, *side);
   }
   const auto description = mesh_node ? read_mesh(*mesh_node, reading) : std::nullopt;
   const auto name = side ? side->text() : std::nullopt;
@@ -124,12 +139,7 @@ std::optional<RigidSurface> read_mesh_side(const JsonNode& node, SceneReading& r
   auto mesh = made_mesh(node, *mesh_node, *description, "", reading);
   reading.nodes = nodes;
   if (!mesh) return std::nullopt;
-  try {
-    return MeshSide(*description, *std::move(mesh), *name);
-  } catch (const std::invalid_argument& fault) {
-    side->error("is " + in_quotes(*name) + "; " + fault.what());
-    return std::nullopt;
-  }
+  return side_of(*description, *mesh, *side);
 }
 
 json value_json(const Number& number) { return number.value; }
@@ -163,11 +173,12 @@ json as_drawn(const MeshSide& side, const Numbers<double>& numbers) {
   if (side.mesh.dimension == 2) {
     const Points<double> vertices = vertices_of(side, numbers);
     const auto add = [&](int v) { points.push_back({vertices(0, v), vertices(1, v)}); };
-    for (std::size_t f = 0; f < side.facets.size(); ++f) {
-      const bool goes_on = f > 0 && side.facets[f - 1][1] == side.facets[f][0];
-      if (!goes_on && f > 0) points.push_back(nullptr);
-      if (!goes_on) add(side.facets[f][0]);
-      add(side.facets[f][1]);
+    for (std::size_t f = side.facets.size(); f-- > 0;) {  // backwards: a polyline has its solid on the right
+      const bool is_first = f + 1 == side.facets.size(),
+                 goes_on = !is_first && side.facets[f + 1][0] == side.facets[f][1];
+      if (!goes_on && !is_first) points.push_back(nullptr);
+      if (!goes_on) add(side.facets[f][1]);
+      add(side.facets[f][0]);
     }
   }
   return {{"polyline", {{"points", points}}}};

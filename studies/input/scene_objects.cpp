@@ -98,7 +98,7 @@ constexpr const char* scene_text = R"json({
       "title": "faceted, smooth or object", "examples": ["smooth"],
       "anyOf": [{"enum": ["faceted", "smooth"]}, {"$object": "surface"}]},
     "discretization": {
-      "description": "node: node-to-segment; segment: mortar, gap and slip integrated along both sides (in space at small strain). Left out: segment at finite strain, of solid bodies against one another and polylines, if no surface is given; else node",
+      "description": "node: node-to-segment; segment: mortar, gap and slip integrated along both sides (in space at small strain). Left out: segment at finite strain, of solid bodies against one another and obstacles of facets (polyline, mesh_side), if no surface is given; else node",
       "enum": ["node", "segment"], "examples": ["segment"]}}},
 
 "surface": {"required": ["smooth"], "properties": {

@@ -156,15 +156,15 @@ void add_masters_inside(const CaseResult& result, int c, std::vector<Warning>& w
     time = step.increment->time;
   }
   if (!(worst.inside > 0)) return;
-  const bool polyline = obstacle_of(model, c) != nullptr;
+  const bool rigid = obstacle_of(model, c) != nullptr;
   warnings.push_back(
       {WarningCode::master_inside, contact.name, worst.inside,
-       polyline ? R"(refine the slave's mesh, or integrate over segments ("discretization": "segment"))"
-                : R"(take the other side as the slave, or integrate over segments ("discretization": "segment"))",
+       rigid ? R"(refine the slave's mesh, or integrate over segments ("discretization": "segment"))"
+             : R"(take the other side as the slave, or integrate over segments ("discretization": "segment"))",
        fmt::format("{}: at t = {:.6g} a {} of {}, at {}, is inside of {} by {:.3g}: no slave node is near enough to "
                    "hold it off",
-                   contact.name, time, polyline ? "vertex" : "node", contact.master,
-                   in_words({worst.at[0], worst.at[1]}), contact.slave, worst.inside)});
+                   contact.name, time, rigid ? "vertex" : "node", contact.master, in_words({worst.at[0], worst.at[1]}),
+                   contact.slave, worst.inside)});
 }
 
 /// The facets of a deformable master that point p faces, by their nodes.

@@ -29,7 +29,7 @@ std::string what_to_check_if_open(const FailedContact& contact) {
   }
   return "all are open: the load may pull the body off its master, or the master may be solid on the wrong side; "
          "check the sign of the load, the normal of a plane (it points out of the solid) and the order of a "
-         "polyline's points (its solid is on their right)";
+         "polyline's points (its solid is on their right), or the side of the mesh that is held rigid";
 }
 
 std::string what_to_check(const FailedContact& contact) {

@@ -95,13 +95,25 @@ Wires wires(const Cylinder& cylinder, const Numbers<double>& numbers, const Poin
   return out;
 }
 
-/// Each edge once; of many some.
+/// Each edge of a facet that is as near to the bodies as half of their size, once; of many some. Of all facets, if none
+/// is as near.
 template <class Shape>
-Wires edge_wires(const Shape& shape, const Numbers<double>& numbers) {
+Wires edge_wires(const Shape& shape, const Numbers<double>& numbers, const Points<double>& bodies) {
   const auto vertices = vertices_of(shape, numbers);
+  const Spot low = bodies.rowwise().minCoeff(), high = bodies.rowwise().maxCoeff();
+  const double room = 0.5 * (high - low).maxCoeff();
+  const auto is_near = [&](int v) {
+    const Spot x = vertices.col(v);
+    return ((low - x).array() <= room).all() && ((x - high).array() <= room).all();
+  };
   std::set<std::pair<int, int>> edges;
-  for (const auto& facet : facets_of(shape))
+  const auto add = [&](const std::vector<int>& facet) {
     for (std::size_t k = 0; k < facet.size(); ++k) edges.insert(std::minmax(facet[k], facet[(k + 1) % facet.size()]));
+  };
+  const auto facets = facets_of(shape);
+  for (const auto& facet : facets)
+    if (std::any_of(facet.begin(), facet.end(), is_near)) add(facet);
+  if (edges.empty()) std::for_each(facets.begin(), facets.end(), add);
   constexpr std::size_t most = 3000;
   const std::size_t stride = (edges.size() + most - 1) / most;
   Wires out;
@@ -117,7 +129,7 @@ Wires wires_of(const Obstacle& obstacle, const Numbers<double>& numbers, const P
   return std::visit(
       [&]<class Shape>(const Shape& shape) -> Wires {
         if constexpr (requires { Shape::has_facets; })
-          return edge_wires(shape, numbers);
+          return edge_wires(shape, numbers, bodies);
         else if constexpr (requires { wires(shape, numbers, bodies); })
           return wires(shape, numbers, bodies);
         else

@@ -27,7 +27,7 @@ struct Line {
 
 /// From vertex 1 to vertex 2; 0 and 3 are their neighbours, where the master is smooth there.
 struct Patch {
-  std::array<int, 4> vertex;             ///< nodes, or points of an obstacle's polyline
+  std::array<int, 4> vertex;             ///< nodes, or vertices of an obstacle
   std::array<int, 2> beside = {-1, -1};  ///< the patches before and behind it; -1: a free end
   std::array<double, 2> slope = {1, 1};  ///< Catmull-Rom: factors of (y_next - y_previous) / 2 at both ends
   double length = 0, arc = -1;           ///< of the start; along the master to its beginning
@@ -112,15 +112,16 @@ class Master {
     if (surface.is_object()) corner = surface.value("corner", corner);
     frozen_ = !scene.finite && smooth == 0 && !itself_;
     if (!rigid() && scene.dimension == 2) facets = facets_of(scene.side(master));
-    const Json points = part(part(obstacle, "polyline"), "points");  // the solid is on its right
-    at.resize(3, std::ssize(points));
-    for (int v = 0; v < std::ssize(points); ++v) at.col(v) = vec3(points[v]);
     if (const auto made = scene.faces.find(master); made != scene.faces.end() && scene.dimension == 2) {
       at = made->second.vertices;
       for (const auto& ends : made->second.faces) facets.push_back({{ends.at(0), ends.at(1)}});
+    } else {
+      const Json points = part(part(obstacle, "polyline"), "points");  // the solid is on its right
+      at.resize(3, std::ssize(points));
+      for (int v = 0; v < std::ssize(points); ++v) at.col(v) = vec3(points[v]);
+      for (int v = 0; v + 1 < std::ssize(points); ++v)
+        facets.push_back({{v + 2 == std::ssize(points) && points.front() == points.back() ? 0 : v + 1, v}});
     }
-    for (int v = 0; v + 1 < std::ssize(points); ++v)
-      facets.push_back({{v + 2 == std::ssize(points) && points.front() == points.back() ? 0 : v + 1, v}});
     for (const auto& [ends, edge] : facets) patches.push_back({{ends[0], ends[0], ends[1], ends[1]}});
     place_vertices(scene.points);
     link();
@@ -205,7 +206,7 @@ class Master {
 
   std::vector<Patch> patches;
   Facets facets;       ///< those of the patches
-  Field at;            ///< where nodes are, or the points of an obstacle's polyline
+  Field at;            ///< where nodes are, or the vertices of an obstacle
   double loop = 0;     ///< length of a closed master; 0: it is open
   Json obstacle;       ///< empty: the master deforms
   Motion motion;       ///< of an obstacle

@@ -247,7 +247,8 @@ $EndElements
 )";
   constexpr const char* loose = R"({"gmsh": "loose.msh"})";  // a surface on no body
   EXPECT_EQ(fault_of(loose, "punch"), "none");
-  EXPECT_THAT(fault_of(loose, "punsh"), testing::HasSubstr("no physical surface of this name that is on no body, but"));
+  EXPECT_THAT(fault_of(loose, "punsh"),
+              testing::HasSubstr("no physical surface of this name that is on no body; those that are: punch"));
   EXPECT_THAT(fault_of(R"({"gmsh": "loose.msh", "split": 1})", "punch"), testing::HasSubstr("belongs to a body"));
   EXPECT_THAT(fault_of(R"({"gmsh": "loose.msh", "body": "punch"})", "punch"), testing::HasSubstr("there is no body"));
   const auto on_loose = run(drawn_block("finite", side_of(loose, "punch")), "monolithic_al");

@@ -205,7 +205,9 @@ TEST(MshReader, DirectsAndOrdersTheSidesOfEachBody) {
     turned +=
         triangles.points(0, f[0]) * triangles.points(1, f[1]) - triangles.points(0, f[1]) * triangles.points(1, f[0]);
   EXPECT_LT(turned, 0);
-  EXPECT_EQ(result.notes, std::vector<std::string>{"physical curve \"apart\" is not on a body"});
+  EXPECT_EQ(result.notes,
+            std::vector<std::string>{"physical curve \"apart\" is not on a body; an obstacle may have its "
+                                     "shape (mesh_side)"});
 }
 
 TEST(MshReader, ReordersACurveWhoseElementsAreShuffledAndTurned) {
