@@ -119,7 +119,7 @@ FAULTS = [
     ("weights of faces on their facets", "core/contact/overlaps.hpp",
      "place.across = <<<cross<T>(along_s, along_t)>>> * (s_s", "T(1.1) * cross<T>(along_s, along_t)"),
     ("a corner that loses its node to the wall", "core/contact/surface_search.hpp",
-     "is_beside ? <<<past_end_of_surface>>> * size", "0.0"),
+     "is_beside ? <<<beside>>> : 0", "0.0"),
     ("a far side that faces a wall through the body", "core/contact/surface_search.hpp",
      "? <<<this->is_outside_of_facets(x)>>>", "false"),
     ("a sole that goes on past its corner", "core/model/pairing.cpp", "if (<<<closest->second >= 0>>> && master", "false"),

@@ -57,6 +57,14 @@ Vec<T, 3> area_vector(int corners, const Corner& corner) {
   return T(0.5) * cross<T>(is_triangle ? between(0, 1) : between(0, 2), is_triangle ? between(0, 2) : between(1, 3));
 }
 
+/// Width of a face behind an edge, length: of a triangle its height, of a quadrilateral its area over the length of the
+/// edge.
+template <class T, class Corner>
+T width_behind(int corners, int edge, const Corner& corner) {
+  const Vec<T, 3> along = corner((edge + 1) % corners) - corner(edge);
+  return T(corners == 3 ? 2 : 1) * norm(area_vector<T>(corners, corner)) / norm(along);
+}
+
 /// Coordinates (s, t) of a corner, counted on from the first beyond the last.
 inline Vec<double, 2> face_corner(int corners, int number) {
   const int k = number % corners;

@@ -222,14 +222,32 @@ int PatchSearch<3>::nearest_of_itself(const Vec<double, 3>& x, const Vec<double,
   return near.empty() ? no_patch : near.front().face;
 }
 
-/// Whether a foot is beyond an edge at which the eligible patches end.
+/// Whether the eligible patches end at an edge.
+bool PatchSearch<3>::ends(int patch, int edge, const Query& query) const {
+  const Patch<3>& of = patches_[patch];
+  return !of.goes_on(edge) && (of.across[edge] == no_patch || !is_eligible(of.across[edge], query));
+}
+
+/// Whether a foot is too far beyond an edge at which the eligible patches end.
 bool PatchSearch<3>::is_past_end(const Facing& at, const Query& query) const {
   const Patch<3>& patch = patches_[at.patch];
   for (int k = 0; k < patch.corners; ++k) {
-    const bool ends = !patch.goes_on(k) && (patch.across[k] == no_patch || !is_eligible(patch.across[k], query));
-    if (ends && beyond_edge(patch, k, at.at) > past_end_of_surface) return true;
+    const double furthest =
+        query.size > 0 ? RoundedEnd<double>(query.size, patch.widths[k]).furthest() : past_end_of_surface;
+    if (beyond_edge(patch, k, at.at) > furthest && ends(at.patch, k, query)) return true;
   }
   return false;
+}
+
+/// A foot with the ends that it is beyond where these are rounded off; none if it is too far beyond one.
+Facing PatchSearch<3>::at_ends(Facing at, const Query& query) const {
+  if (at.patch == no_patch || !(query.size > 0)) return at;
+  if (is_past_end(at, query)) return {};
+  const Patch<3>& patch = patches_[at.patch];
+  for (int k = 0; k < patch.corners; ++k)
+    if (beyond_edge(patch, k, at.at) > RoundedEnd<double>(query.size, patch.widths[k]).from && ends(at.patch, k, query))
+      at.ends |= 1 << k;
+  return at;
 }
 
 /// What x faces if its foot on a patch lies past an edge at which the surface is not smooth.

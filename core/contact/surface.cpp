@@ -129,6 +129,10 @@ Surface<3> make_surface<3>(const std::vector<std::vector<int>>& faces, Smoothing
   Surface<3> patches;
   for (const auto& face : faces) patches.push_back({static_cast<int>(face.size()), face});
   join(patches);
+  for (auto& patch : patches)
+    for (int k = 0; k < patch.corners; ++k)
+      patch.widths[k] = width_behind<double>(patch.corners, k,
+                                             [&](int j) -> Vec<double, 3> { return positions.col(patch.vertices[j]); });
   if (smoothing == Smoothing::none) return patches;
   const auto sharp = sharp_edges(patches, corner, positions);
   for (auto& patch : patches)
@@ -145,13 +149,6 @@ std::vector<std::vector<int>> corners_of(const Surface<3>& patches) {
   for (const auto& patch : patches)
     corners.emplace_back(patch.vertices.begin(), patch.vertices.begin() + patch.corners);
   return corners;
-}
-
-double beyond_edge(const Patch<3>& patch, int edge, const Vec<double, 2>& at) {
-  if (edge == 0) return -at[1];
-  if (edge == patch.corners - 1) return -at[0];
-  if (patch.corners == 3) return at.sum() - 1;
-  return at[edge - 1] - 1;
 }
 
 }  // namespace stickslip

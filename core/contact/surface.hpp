@@ -75,6 +75,7 @@ struct Patch<3> {
   std::array<int, 4> across{{no_patch, no_patch, no_patch, no_patch}};
   std::array<int, 4> across_edge{};  ///< per edge: its number on the patch behind it
   std::array<char, 4> smooth_at{};   ///< per edge: goes_on()
+  std::array<double, 4> widths{};    ///< per edge: width_behind() it at the start
   int corner(int k) const { return vertices[k]; }
   bool goes_on(int edge) const { return smooth_at[edge] != 0; }
   bool goes_on_around() const { return std::count(smooth_at.begin(), smooth_at.end(), 1) == corners; }
@@ -104,7 +105,13 @@ std::vector<std::vector<int>> corners_of(const Surface<3>& patches);
 
 /// How far a place is beyond an edge of a patch, in its coordinates; negative inside.
 inline double beyond_edge(const Patch<2>&, int end, const Vec<double, 2>& at) { return end == 1 ? at[0] - 1 : -at[0]; }
-double beyond_edge(const Patch<3>& patch, int edge, const Vec<double, 2>& at);
+template <class At>
+auto beyond_edge(const Patch<3>& patch, int edge, const At& at) {
+  using T = typename At::Scalar;
+  if (edge == 0) return T(-at[1]);
+  if (edge == patch.corners - 1) return T(-at[0]);
+  return T((patch.corners == 3 ? T(at[0] + at[1]) : at[edge - 1]) - T(1));
+}
 
 /// Whether a place is beyond a border of the surface by more than `by`.
 template <int D>
@@ -129,6 +136,8 @@ struct Facing {
   using Coordinates = Eigen::Matrix<double, 2, 1, Eigen::DontAlign>;
   int patch = no_patch;                  ///< no_patch: the point faces nothing of the surface
   Coordinates at = Coordinates::Zero();  ///< of the foot on the patch; in the plane xi and 0
+  int ends = 0;                          ///< in space: bit k: the foot is beyond edge k, where the surface ends and is
+                                         ///< rounded off (past_end.hpp)
   double distance = 0;                   ///< where nothing is faced: to the nearest facet, length
   int nearest = no_patch;                ///< where nothing is faced: the patch of the nearest facet
   /// Segment-integrated contact: the segments. `patch` is then the origin of arc lengths along the curve.

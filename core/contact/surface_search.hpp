@@ -12,17 +12,10 @@
 #include "core/contact/box_tree.hpp"
 #include "core/contact/face_search.hpp"
 #include "core/contact/own_vertex.hpp"
+#include "core/contact/past_end.hpp"
 #include "core/contact/surfaces.hpp"
 
 namespace stickslip {
-
-/// Share of a patch by which a foot may lie past the end of a surface that it still faces. Why: two sides that end
-/// together overlap only roughly. Example: two blocks pressed to 0.7 of their height; there the compliance of a
-/// penalty, or the first augmentation, moves the last node off its master and back for ever. In space the normal at a
-/// border is that of one side, so a node in a plane of symmetry, where a body is cut, projects a little past it.
-inline constexpr double past_end_of_surface = 0.01;
-/// Share of a patch by which what is past its end, outside of a wall, is inside by it at most.
-inline constexpr double deepest_past_end = 0.25;
 
 template <int D>
 class PatchSearch;
@@ -107,12 +100,13 @@ class PatchSearch<3> {
  protected:
   PatchSearch(const Surface<3>& patches, const Places<3>& positions);
 
-  /// As on a curve. `start`: set with `own`.
+  /// As on a curve. `start`: set with `own`. `size`: l of past_end.hpp; 0: ends are not rounded off.
   struct Query {
     Vec<double, 3> x, outward;
     const OwnVertex* own = nullptr;
     int last = no_patch;
     const Places<3>* start = nullptr;
+    double size = 0;
     double least_against() const { return own ? stickslip::least_against : least_against_a_side; }
   };
   Facing nearest_facing(const Query& query) const;
@@ -122,6 +116,7 @@ class PatchSearch<3> {
   bool is_outside_of_facets(const Vec<double, 3>& x) const;
   Vec<double, 3> normal(const Facing& at) const;
   Facing facing_nothing(const Vec<double, 3>& x) const;
+  Facing at_ends(Facing at, const Query& query) const;
   Vec<double, 2> middle_of(int patch) const {
     return Vec<double, 2>::Constant(patches_[patch].corners == 3 ? 1.0 / 3 : 0.5);
   }
@@ -133,6 +128,7 @@ class PatchSearch<3> {
   bool may_be_touched(int patch, const Query& query) const;
   bool is_eligible(int patch, const Query& query) const;
   bool comes_after(const Facing& at, const OwnVertex& own) const;
+  bool ends(int patch, int edge, const Query& query) const;
   bool is_past_end(const Facing& at, const Query& query) const;
   Facing beyond_edges(const Facing& at, const Query& query) const;
   Facing larger_gap(const std::vector<Facing>& feet, const Vec<double, 3>& x) const;
@@ -164,30 +160,44 @@ class SurfaceSearch : public PatchSearch<D> {
   ///            (surfaces.hpp, opposes()); if it is zero, all patches are
   ///
   ///   comes_on  it faced nothing in the last increment
+  ///   rounded   in space: size of the slave facets at x, by which ends are rounded off (past_end.hpp); 0: they are not
   ///
   /// If the nearest of all patches has x outside of the solid, x is not inside of it by a farther patch. But outside of
   /// the wall of a block by no more than what is still faced past the end of its sole, x is inside by the sole. This
   /// does not hold for what comes on, as what a block that slides has before it, nor far inside, as beside a wall.
-  Facing facing(const Vec<double, D>& x, const Vec<double, D>& outward, bool comes_on = false) const {
+  Facing facing(const Vec<double, D>& x, const Vec<double, D>& outward, bool comes_on = false,
+                double rounded = 0) const {
     const Vec<double, D> any = Vec<double, D>::Zero();
-    Facing found = this->nearest_facing({x, outward});
+    const auto query = asked(x, outward, rounded);
+    Facing found = this->nearest_facing(query);
     const double size = found.patch != no_patch ? this->size(found.patch) : 0;
     if (found.patch != no_patch && outward != any && this->gap(found, x) < -mesh_file_rounding * size) {
       const Facing nearest = this->nearest_facing({x, any});
-      const bool may_be_past = !comes_on && this->gap(found, x) > -deepest_past_end * size;
+      const double beside = std::max(past_end_of_surface * size, 0.5 * rounded);
+      const bool may_be_past = !comes_on && this->gap(found, x) > -std::max(deepest_past_end * size, 0.5 * rounded);
       const bool is_beside =
           may_be_past && nearest.patch != no_patch && !opposes<D>(this->normal(nearest), this->normal(found));
-      const bool is_outside = nearest.patch == no_patch
-                                  ? this->is_outside_of_facets(x)
-                                  : this->gap(nearest, x) >= (is_beside ? past_end_of_surface * size : 0);
+      const bool is_outside =
+          nearest.patch == no_patch ? this->is_outside_of_facets(x) : this->gap(nearest, x) >= (is_beside ? beside : 0);
       if (is_outside) found = {};
     }
-    if constexpr (D == 2) found = this->settled(found, {x, outward});
+    if constexpr (D == 2) found = this->settled(found, query);
+    if constexpr (D == 3) found = this->at_ends(found, query);
     return found.patch != no_patch ? found : this->facing_nothing(x);
   }
   /// The foot of x on one patch, which is extended past its edges.
-  Facing foot_on(int patch, const Vec<double, D>& x) const {
-    return this->newton_foot({patch, this->middle_of(patch)}, x, 0);
+  Facing foot_on(int patch, const Vec<double, D>& x, const Vec<double, D>& outward = Vec<double, D>::Zero(),
+                 double rounded = 0) const {
+    const Facing foot = this->newton_foot({patch, this->middle_of(patch)}, x, 0);
+    if constexpr (D == 3) return this->at_ends(foot, asked(x, outward, rounded));
+    return foot;
+  }
+
+ private:
+  static auto asked(const Vec<double, D>& x, const Vec<double, D>& outward, [[maybe_unused]] double rounded) {
+    typename PatchSearch<D>::Query query{x, outward};
+    if constexpr (D == 3) query.size = rounded;
+    return query;
   }
 };
 

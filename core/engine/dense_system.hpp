@@ -50,11 +50,11 @@ class DenseSystem : public PointSystem<T> {
   bool is_free(Eigen::Index row) const override { return free_[row]; }
   bool has_costly_factors() const override { return false; }
   const std::string& message() const override { return factor_.message(); }
-  std::string factor_name() const { return kind_.symmetry == Symmetry::positive_definite ? "LL^T" : "LU"; }
+  std::string factor_name() const { return this->symmetry() == Symmetry::positive_definite ? "LL^T" : "LU"; }
   std::string name() const override { return "condensed, dense " + factor_name(); }
   long nonzeros() const override { return static_cast<long>(this->unknowns()) * this->unknowns(); }
   void add_to_report(EngineReport& report) const override {
-    report.unsymmetric = kind_.symmetry == Symmetry::general;
+    report.unsymmetric = this->symmetry() == Symmetry::general;
     report.factor = factor_.bytes();
     report.matrix_entries = report.factor_entries = static_cast<long>(matrix_.size());
     report.matrix = static_cast<long>(matrix_.size() * sizeof(T));
@@ -209,7 +209,7 @@ bool DenseSystem<T>::make_factor(Counters& counters) {
   if (kind_.has_unknown_multipliers() && this->size() >= large_dense_system) points_ = eliminated();
   if (points_) {
     matrix_.resize(0, 0);
-    const bool is_symmetric = kind_.symmetry == Symmetry::indefinite && points_->keeps_symmetry();
+    const bool is_symmetric = this->symmetry() == Symmetry::indefinite && points_->keeps_symmetry();
     const Symmetry symmetry = is_symmetric ? Symmetry::positive_definite : Symmetry::general;
     const bool valid = factor_.factorise(points_->reduced(), symmetry, counters.factorizations);
     points_->let_reduced_go();
@@ -220,7 +220,7 @@ bool DenseSystem<T>::make_factor(Counters& counters) {
   put_bodies(K);
   this->for_each_hold([&](int row, const T& x) { K(row, row) += x; });
   add_points(made_.tangents, kind_.multipliers, K);
-  return factor_.factorise(K, kind_.symmetry, counters.factorizations);
+  return factor_.factorise(K, this->symmetry(), counters.factorizations);
 }
 
 template <class T>

@@ -2,6 +2,8 @@
 /// that is used again, updated or made anew, and the solution with it.
 #pragma once
 
+#include <algorithm>
+
 #include "core/engine/tangent_system.hpp"
 #include "core/model/frames.hpp"
 #include "core/model/point_tangent.hpp"
@@ -104,6 +106,12 @@ class PointSystem : public TangentSystem<T> {
   /// Whether the factor has no rows for the multipliers of a point.
   virtual bool leaves_out(const PointTangent<T>& /*tangent*/) const { return false; }
 
+  /// Of the tangent of made_: general if a point has no potential.
+  Symmetry symmetry() const {
+    const auto has_potential = [](const PointTangent<T>& tangent) { return tangent.has_potential; };
+    const bool all = std::all_of(made_.tangents.begin(), made_.tangents.end(), has_potential);
+    return all ? kind_.symmetry : Symmetry::general;
+  }
   Eigen::Index size() const { return static_cast<Eigen::Index>(displacements_.size() + multipliers_.size()); }
   /// Rows of the factor that a point has entries in, with nodes at these places; -1: not there.
   std::vector<int> rows_of(std::size_t p, const std::vector<int>& places) const {

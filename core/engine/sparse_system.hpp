@@ -69,8 +69,8 @@ class SparseSystem : public PointSystem<T> {
   std::vector<std::vector<int>> point_map_;  ///< per point: entries_of its rows; none where points slide along surfaces
   std::vector<T> values_;                    ///< that are factorised
   LinearSolver<T> solver_;
-  bool analysed_ = false;
-  std::optional<Inertia> inertia_ = std::nullopt;  ///< of motions_unresisted(), analysed for this pattern
+  std::optional<Symmetry> analysed_ = std::nullopt;  ///< for tangents of this symmetry
+  std::optional<Inertia> inertia_ = std::nullopt;    ///< of motions_unresisted(), analysed for this pattern
 };
 
 template <class T>
@@ -104,7 +104,7 @@ void SparseSystem<T>::lay_out(Places places) {
   if (!slides) point_map_.reserve(model_.points.size());
   for (std::size_t p = 0; p < model_.points.size() && !slides; ++p)
     point_map_.push_back(entries_of(this->rows_of(p, model_.points[p].places)));
-  analysed_ = false;
+  analysed_.reset();
   inertia_.reset();
 }
 
@@ -196,8 +196,9 @@ bool SparseSystem<T>::make_factor(Counters& counters) {
   values_ = matrix_.values;
   this->for_each_hold([&](int row, const T& x) { diagonal(values_, row) += x; });
   add_points(made_.tangents, kind_.multipliers, values_);
-  if (!std::exchange(analysed_, true)) {
-    solver_.analyse(matrix_.pattern, kind_.symmetry);
+  if (const Symmetry now = this->symmetry(); analysed_ != now) {
+    solver_.analyse(matrix_.pattern, now);
+    analysed_ = now;
     ++counters.analyses;
   }
   const long before = solver_.counters().factorizations;
@@ -220,7 +221,7 @@ Matrix<T> SparseSystem<T>::multiply(const Matrix<T>& x, Taken taken) const {
 template <class T>
 void SparseSystem<T>::add_to_report(EngineReport& report) const {
   report.bodies = static_cast<long>(matrix_.values.size() * sizeof(T));
-  report.unsymmetric = kind_.symmetry == Symmetry::general;
+  report.unsymmetric = this->symmetry() == Symmetry::general;
   report.matrix = static_cast<long>(values_.size() * sizeof(T)) + matrix_.pattern->bytes();
   for (const auto& map : point_map_) report.matrix += static_cast<long>(map.size() * sizeof(int));
   report.factor = solver_.factor_bytes();

@@ -33,7 +33,7 @@ enum class Solving { refined, unrefined, transposed };
 /// What is known of all tangents of a run.
 struct SystemKind {
   Multipliers multipliers = Multipliers::given;
-  Symmetry symmetry = Symmetry::general;
+  Symmetry symmetry = Symmetry::general;  ///< of those whose points all have a potential
   Backend backend = Backend::automatic;
   bool has_unknown_multipliers() const { return multipliers == Multipliers::unknown; }
 };

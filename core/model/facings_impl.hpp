@@ -122,6 +122,12 @@ void find_moved_segments(const ContactInput<T>& input, int curve, const Vector<T
   find_segments(model, curve, start, moved, last, found);
 }
 
+/// Size by which ends are rounded off for a point (core/contact/past_end.hpp); 0: they are not, as those of bodies.
+template <int D>
+double size_of_ends(const ContactPoint& point) {
+  return D == 3 && point.obstacle >= 0 ? point.mesh_size : 0;
+}
+
 /// Sets what the points of a surface face; the arguments are those of facings().
 template <class T, int D>
 void find_along_surface(const ContactInput<T>& input, int surface, const Vector<T>& compact,
@@ -133,12 +139,13 @@ void find_along_surface(const ContactInput<T>& input, int surface, const Vector<
     if (point.surface != surface) continue;
     const Vec<double, D> x = now.slave(point);
     if (!kept.empty() && kept[p] != no_patch) {
-      found[p] = now.search().foot_on(kept[p], x);
+      found[p] = now.search().foot_on(kept[p], x, now.outward(point), size_of_ends<D>(point));
       continue;
     }
-    found[p] = point.own.vertex == no_vertex ? now.search().facing(x, now.outward(point), !input.previous.faced[p])
-                                             : facing_itself(now.search(), model.surfaces[surface], x,
-                                                             now.outward(point), point.own, last_faced(input, p));
+    found[p] = point.own.vertex == no_vertex
+                   ? now.search().facing(x, now.outward(point), !input.previous.faced[p], size_of_ends<D>(point))
+                   : facing_itself(now.search(), model.surfaces[surface], x, now.outward(point), point.own,
+                                   last_faced(input, p));
   }
 }
 

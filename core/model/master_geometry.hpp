@@ -3,6 +3,7 @@
 
 #include "core/contact/foot_in_plane.hpp"
 #include "core/contact/foot_in_space.hpp"
+#include "core/contact/past_end.hpp"
 #include "core/model/segment_geometry.hpp"
 
 namespace stickslip::detail {
@@ -74,6 +75,20 @@ void place_beside(const Positions<U, T, Displacement>& positions, const ContactP
     if (master.is_integrated()) at.foot[0] = arc_beside(positions, point, nearest, at.foot[0]);
 }
 
+/// The term by which the gap of a point is larger beyond ends of its surface, which are rounded off.
+template <class U, class T, class Vertex>
+U beyond_ends(const SurfaceFoot<U, 3>& foot, const Facing& facing, const T& size, Vertex&& vertex) {
+  const Patch<3>& patch = *foot.place.patch;
+  const auto corner = [&](int k) -> Vec<T, 3> { return vertex(patch.corner(k)).start; };
+  Vec<U, 2> at;
+  for (int i = 0; i < 2; ++i) at[i] = U(foot.place.at[i]) + foot.place.rest[i];
+  U term(0);
+  for (int k = 0; k < patch.corners; ++k)
+    if ((facing.ends >> k & 1) != 0)
+      term += rounding_off<U, T>({size, width_behind<T>(patch.corners, k, corner)}, beyond_edge(patch, k, at), size);
+  return term;
+}
+
 /// Geometry of a point against its surface.
 template <int D, class U, class T, class Displacement>
 PlacedPoint<U, D> on_master(const Positions<U, T, Displacement>& positions, const ContactPoint& point,
@@ -90,6 +105,12 @@ PlacedPoint<U, D> on_master(const Positions<U, T, Displacement>& positions, cons
   at.geometry.tangents = tangent_frame<U>(at.geometry.normal);
   at.geometry.weights = foot_weights(foot, master.is_rigid());
   at.geometry.area = U(whole_area(point, earlier, positions.slots));
+  if constexpr (D == 3)
+    if (facing.ends != 0) {
+      at.geometry.gap +=
+          beyond_ends<U, T>(foot, facing, size_of_faces<T>(point.area_facets, positions.slots.points), vertex);
+      at.has_potential = false;
+    }
   if (point.foot < 0) return at;
   if (earlier.patch != no_patch) {
     const auto last = stored_place<D>(model, point, earlier.patch, earlier.foot);

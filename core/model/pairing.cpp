@@ -180,13 +180,13 @@ class OwnVertices {
 };
 
 /// What a slave node faces of a surface at the start. Sets what it may face, if the surface is its own side; in space
-/// also this place on each patch that has it.
+/// also this place on each patch that has it. `rounded`: as SurfaceSearch has it.
 template <int D>
 Facing facing_of(const SurfaceSearch<D>& search, const MasterSurface& master, const Vec<double, D>& x,
-                 const Vec<double, D>& outward, ContactPoint& point) {
+                 const Vec<double, D>& outward, double rounded, ContactPoint& point) {
   Facing facing;
   if (point.own.vertex == no_vertex) {
-    facing = search.facing(x, outward);
+    facing = search.facing(x, outward, false, rounded);
   } else {
     facing = detail::facing_itself(search, master, x, outward, point.own, no_patch);
     if (facing.patch == no_patch)
@@ -230,7 +230,8 @@ void pair_along_surface(Model& model, const Points<double>& points, const Pairin
       point.own = own->at(node, outward, point.mesh_size);
       if (!own->may_face_some(point.own)) continue;
     }
-    point.facing = facing_of<D>(search, master, points.col(node), outward, point);
+    const double rounded = D == 3 && model.scene.finite_strain && master.is_rigid() ? point.mesh_size : 0;
+    point.facing = facing_of<D>(search, master, points.col(node), outward, rounded, point);
     const bool faces = point.facing.patch != no_patch;
     if (!faces && !model.scene.finite_strain) continue;
     point.shares_normal = !model.scene.finite_strain && pairing.obstacle < 0 && has_side;

@@ -18,7 +18,8 @@ struct PlacedPoint {
   Feet<T, D> foot = Feet<T, D>::Constant(T(0));
   /// Motion of the foot relative to the master since the last increment, length. Slip is its tangential part.
   Vec<T, D> foot_motion = Vec<T, D>::Constant(T(0));
-  bool faces_master = true;  ///< false: the point is open
+  bool faces_master = true;   ///< false: the point is open
+  bool has_potential = true;  ///< false: the force without friction is not along the gradient of the gap
 };
 
 /// What is known of a point from earlier; nothing at the start.

@@ -15,6 +15,7 @@ struct PointTangent {
   Matrix<T> force_w, force_l;    ///< force: D x D, D x components; with `places` D is the number of their dofs
   Matrix<T> row_w, row_l;        ///< rows A (t - lambda): components x D, components x components
   std::vector<int> places = {};  ///< indices in Model::contact_nodes; empty: those of the weights
+  bool has_potential = true;     ///< as that of PlacedPoint
 };
 
 /// Tangent of point p in the branch `state`. `facing`: per point; not read if no point slides along a curve.

@@ -74,6 +74,7 @@ void sweep(const ContactInput<T>& input, int p, const Facing& facing, const Fixe
   const auto outcome =
       point_outcome<Probe, T, D, Tangents>(input, at, lambda, fixed.placement, fixed.rho, fixed.friction, 0, &state);
   const Vec<Probe, D> force = point_force<Probe, D, Tangents>(at.geometry, outcome.traction);
+  tangent.has_potential = at.has_potential;
   for (int n = 0; n < std::min(faced, static_cast<int>(at.geometry.weights.size())); ++n)
     for (int i = 0; i < D; ++i) {
       const Probe share = at.geometry.weights[n] * force[i];

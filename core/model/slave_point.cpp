@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/contact/past_end.hpp"
+
 namespace stickslip {
 namespace {
 
@@ -12,14 +14,8 @@ bool has_positive_shares(ElementShape shape) { return shape != ElementShape::tet
 
 /// Mean length of the facets at a slave node, in space of their edges; 0 without facets.
 double local_size(const Points<double>& points, const ContactPoint& point) {
+  if (points.rows() == 3) return size_of_faces<double>(point.area_facets, points);
   double size = 0;
-  if (points.rows() == 3) {
-    int edges = 0;
-    for (const auto& face : point.area_facets)
-      for (std::size_t a = 0; a < face.size(); ++a, ++edges)
-        size += (points.col(face[a]) - points.col(face[(a + 1) % face.size()])).norm();
-    return edges > 0 ? size / edges : 0;
-  }
   for (const auto& facet : point.area_facets)
     size += (points.col(facet[0]) - points.col(facet[1])).norm() / static_cast<double>(point.area_facets.size());
   return size;

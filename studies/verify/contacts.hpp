@@ -132,7 +132,17 @@ class Contact {
     }
     for (const auto& face : side_.edges)
       if (faces_ && std::ranges::count(face, node) > 0) add(area_vector(x, face));
+    if (faces_ && scene_.finite && master_.rigid()) seeker.rounded = size_of_faces(node);
     return seeker;
+  }
+
+  /// Mean length of the edges of the faces at a node, at the start.
+  double size_of_faces(int node) const {
+    double sum = 0, count = 0;
+    for (const auto& face : side_.edges)
+      for (std::size_t j = 0; std::ranges::count(face, node) > 0 && j < face.size(); ++j, ++count)
+        sum += (scene_.points.col(face[j]) - scene_.points.col(face[(j + 1) % face.size()])).norm();
+    return count > 0 ? sum / count : 0;
   }
 
   /// Whether a node carries a multiplier on a facet. A corner carries none if the other node does, since two faces that

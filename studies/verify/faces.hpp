@@ -21,6 +21,12 @@ class Faces {
   Faces(const Field& X, const std::vector<Nodes>& faces, int smooth, double corner, bool finite)
       : finite_(finite), patches_(Patchwork(X, faces, smooth, corner).patches) {
     place_nodes(X);
+    for (int p = 0; p < std::ssize(patches_); ++p) {
+      const Nodes& face = patches_[p].face;
+      for (std::size_t j = 0; j < face.size(); ++j)
+        widths_[{p, static_cast<int>(j)}] = (face.size() == 3 ? 2 : 1) * boxes_[p][2].norm() /
+                                            (X.col(face[(j + 1) % face.size()]) - X.col(face[j])).norm();
+    }
   }
 
   void place_nodes(const Field& x) {
@@ -64,7 +70,10 @@ class Faces {
     Foot foot{true, best.y, best.normal, best.gap, best.place};
     const Eigen::VectorXd N = patches_[p].weigh * blend(patches_[p].sides(), Vec2(s, t)).col(0);
     for (Eigen::Index k = 0; k < N.size(); ++k) foot.weights.emplace_back(patches_[p].nodes[k], -N[k]);
-    if (finite_) return foot;
+    if (finite_) {
+      foot.gap += rounding_off(best, seeker);
+      return foot;
+    }
     Vec3 normal = own_ ? best.normal : Vec3(0, 0, 0);
     for (const auto& at : own_ ? std::vector<Near>{} : near) normal += at.normal;
     normal.normalize();
@@ -160,16 +169,43 @@ class Faces {
 
   bool looks_away(int p, const Vec3& outward) const { return !opposes(boxes_[p][2], outward); }
 
-  /// Whether x is past an edge at which the faces that oppose a side end: at finite strain by more than a hundredth of
-  /// a face. There a place so far past an edge where the surface goes on smoothly is on no patch: as past a corner.
-  bool is_past_border(const Near& here, const Vec3& x, const Vec3& outward) const {
+  /// Whether the faces that oppose a side end at an edge of a patch.
+  bool ends(int p, int edge, const Vec3& outward) const {
+    const int other = patches_[p].beyond[edge];
+    return other == FacePatch::none || (other >= 0 && looks_away(other, outward));
+  }
+
+  /// How far a place is into what is rounded off of an end: 0 where that begins, 1 where the gap is infinite.
+  double into_end(int p, int edge, double beyond, const Seeker& seeker) const {
+    const double last = std::min(0.5, 0.5 * seeker.rounded / widths_.at({p, edge})), first = std::min(0.01, last / 5);
+    return (beyond - first) / (last - first);
+  }
+
+  /// By how much the gap is larger past the ends.
+  double rounding_off(const Near& here, const Seeker& seeker) const {
     const auto& [p, s, t] = here.place;
     const Eigen::VectorXd off = from_edges(patches_[p].sides(), s, t);
+    double sum = 0;
     for (int j = 0; j < off.size(); ++j) {
-      const int other = patches_[p].beyond[j];
-      const bool ends = other == FacePatch::none || (finite_ && other == FacePatch::smooth) ||
-                        (other >= 0 && looks_away(other, outward));
-      if (!ends || off[j] > (finite_ ? -0.01 : at_end)) continue;
+      if (seeker.rounded == 0 || !ends(p, j, seeker.outward)) continue;
+      const double into = std::max(0.0, into_end(p, j, -off[j], seeker));
+      sum += 0.01 * seeker.rounded * std::pow(into / (1 - into), 2);
+    }
+    return sum;
+  }
+
+  /// Whether x is past an edge at which the faces that oppose a side end: at finite strain by more than what is rounded
+  /// off there, or by a hundredth of a face. A place so far past an edge where the surface goes on smoothly is on no
+  /// patch: as past a corner.
+  bool is_past_border(const Near& here, const Seeker& seeker) const {
+    const auto& [p, s, t] = here.place;
+    const Vec3& x = seeker.x;
+    const Eigen::VectorXd off = from_edges(patches_[p].sides(), s, t);
+    for (int j = 0; j < off.size(); ++j) {
+      const bool is_end = ends(p, j, seeker.outward), is_joint = finite_ && patches_[p].beyond[j] == FacePatch::smooth;
+      if (!is_end && !is_joint) continue;
+      if (is_end && seeker.rounded > 0 ? into_end(p, j, -off[j], seeker) <= 0.95 : off[j] > (finite_ ? -0.01 : at_end))
+        continue;
       const Vec3 along = jet(p, {s, t}).rightCols<2>() * edge_along(patches_[p].sides(), j);
       if (finite_ || (x - here.y).dot(along.cross(here.normal).normalized()) > 1e-6 * size(p)) return true;
     }
@@ -185,7 +221,7 @@ class Faces {
       if (const auto on = across(at.place.patch, {at.place.xi, at.place.eta}, Eigen::Matrix2d::Identity(), x))
         near.push_back(this->near(at.place.patch, *on, x));
     if (!moves) std::erase_if(near, [&](const Near& at) { return looks_away(at.place.patch, outward); });
-    if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(at, x, outward); })) return false;
+    if (std::ranges::any_of(near, [&](const Near& at) { return is_past_border(at, seeker); })) return false;
     if (!moves || near.empty()) return !near.empty();
     std::ranges::sort(near, {}, [](const Near& at) { return at.place.patch; });
     const double most = std::ranges::max(near, {}, &Near::gap).gap - at_end * size(near[0].place.patch);
@@ -203,16 +239,19 @@ class Faces {
     auto all = closest(x, Vec3::Zero());
     const bool is_outside = std::ranges::any_of(all, [](const Near& at) { return at.gap > 0; });
     if (!settle_on(all, {seeker.node, x})) return !is_outside;
-    const bool is_beside = !seeker.comes_on && near[0].gap > -0.25 * edge && !opposes(all[0].normal, near[0].normal);
-    return all[0].gap < (is_beside ? 0.01 * edge : 0);  // (a little past the end of a sole)
+    const double half = seeker.rounded / 2;
+    const bool is_beside =
+        !seeker.comes_on && near[0].gap > -std::max(0.25 * edge, half) && !opposes(all[0].normal, near[0].normal);
+    return all[0].gap < (is_beside ? std::max(0.01 * edge, half) : 0);  // (a little past the end of a sole)
   }
 
   bool finite_;
   Field x_;  ///< where nodes are
   std::vector<FacePatch> patches_;
-  std::vector<Field> nets_;                 ///< control points
-  std::vector<std::array<Vec3, 3>> boxes_;  ///< two ends of what they are in; area vectors of faces
-  std::optional<OwnWalls> own_;             ///< of a side that touches itself
+  std::vector<Field> nets_;                       ///< control points
+  std::vector<std::array<Vec3, 3>> boxes_;        ///< two ends of what they are in; area vectors of faces
+  std::map<std::pair<int, int>, double> widths_;  ///< of a face behind one of its edges, at the start
+  std::optional<OwnWalls> own_;                   ///< of a side that touches itself
 };
 
 }  // namespace stickslip::verify

@@ -57,9 +57,10 @@ struct Seeker {
   Vec3 x = Vec3::Zero();
   Vec3 outward = Vec3::Zero();  ///< sum of the normals of its facets, times their lengths; zero: it has none
   double size = 0;              ///< mean length of its facets
-  bool comes_on = false;        ///< it faced nothing in the last increment
-  int faced = -1;               ///< the patch that it faced then; -1: none
-  std::vector<Vec3> normals;    ///< of which it is the sum
+  double rounded = 0;         ///< of ends, on an obstacle in space: mean length of the edges of its faces at the start
+  bool comes_on = false;      ///< it faced nothing in the last increment
+  int faced = -1;             ///< the patch that it faced then; -1: none
+  std::vector<Vec3> normals;  ///< of which it is the sum
   /// The sum of those that face a normal of the master within 60 degrees; of all if none does.
   Vec3 against(const Vec3& across) const {
     Vec3 sum = Vec3::Zero();

@@ -319,6 +319,24 @@ Scene over_a_mesh(Smoothing smoothing, bool finite) {
   return s;
 }
 
+/// The same block on a rigid box of nearly its own size: pressed, it spreads over all ends of the box.
+Scene on_a_box(const std::optional<double>& friction) {
+  Scene s = twisted_block(NeoHookean{1000.0, 0.3}, true);
+  if (!friction) s.contacts[0].friction.reset();
+  BoxMesh box;
+  box.min = {-0.01, 0.0, -1.0};
+  box.max = {scenes::parameter(s, "end", 1.19), 0.89, -0.04};
+  box.cells = {3, 3, 1};
+  s.obstacles[0].shape = MeshSide(box, make_mesh(box, "", 3), "boundary");
+  s.contacts[0].smoothing = Smoothing::catmull_rom;
+  if (!friction)  // the others are zero
+    std::erase_if(s.responses, [](const Response& r) { return r.name != "press" && r.name != "energy"; });
+  std::erase_if(s.parameters, [&](const Parameter& p) {
+    return p.name == "tilt" || p.name == "pressure" || p.name == "grade" || (!friction && p.name == "mu");
+  });
+  return s;
+}
+
 /// Few steps and parameters: the oracle runs each in complex numbers.
 Scene few_steps(Scene s) {
   s.legs = {{1, 1}, {2, 1}};
@@ -417,6 +435,20 @@ TEST(SolidBodies, OverRigidSidesOfMeshesHaveTheDerivativesOfTheOracleInBothModes
   scenes::expect_derivatives_in_both_modes(few_steps(over_a_mesh(Smoothing::b_spline, true)), monolithic);
   scenes::expect_derivatives_in_both_modes(few_steps(over_a_mesh(Smoothing::none, false)), monolithic);
   scenes::expect_derivatives_in_both_modes(few_cells(segmented(over_a_mesh(Smoothing::none, false))), monolithic);
+}
+
+TEST(SolidBodies, PastTheEndsOfTheirMasterHaveTheDerivativesOfTheOracleInBothModes) {
+  const auto schemes = scenes::finite_schemes();
+  for (const auto& friction : {std::optional<double>(), std::optional(0.3)})
+    for (const std::size_t k : {0U, 1U, 4U}) {  // one a method
+      const Scene scene = few_cells(on_a_box(friction));
+      const auto run = scenes::run(scene, schemes[k]);
+      const auto is_past = [](const Facing& facing) { return facing.ends != 0; };
+      ASSERT_FALSE(run.trajectory.increments.empty());
+      const auto& contact = run.trajectory.increments.back().state.contact;
+      EXPECT_TRUE(std::any_of(contact.facing.begin(), contact.facing.end(), is_past));
+      scenes::expect_derivatives_in_both_modes(scene, schemes[k]);
+    }
 }
 
 TEST(SolidBodies, ThatSlideOverOneAnotherHaveTheDerivativesOfTheOracle) {

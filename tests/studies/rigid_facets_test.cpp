@@ -212,6 +212,33 @@ TEST_F(RigidTriangles, ThatAreSidesOfMeshesHaveCertificates) {
   for (const json& scene : {in_plane, in_space}) expect_certificates(scene);
 }
 
+TEST_F(RigidTriangles, LetABodySpreadOverTheirEnds) {
+  json scene = json::parse(R"({
+    "space": "solid", "strain": "finite",
+    "bodies": {"body": {"mesh": {"box": {"min": [-0.5, -0.5, 0], "max": [0.5, 0.5, 0.6], "cells": [4, 4, 3]}},
+                        "material": {"neo_hookean": {"E": 1000, "nu": 0.4}}, "element": "H8_mean_dilatation"}},
+    "supports": [{"on": "body.top", "move": {"x": 0, "y": 0, "z": [[0, 0], [1, -0.12]]}}],
+    "contacts": {"sole": {"slave": "body.bottom", "master": "tool", "friction": 0.2}},
+    "time": {"end": 1, "steps": 6},
+    "responses": {"press": {"contact_force": {"contact": "sole", "component": "normal"}}}})");
+  scene["obstacles"]["tool"] =
+      side_of(R"({"box": {"min": [-0.5, -0.5, -0.3], "max": [0.5, 0.5, 0], "cells": [3, 3, 1]}})", "boundary");
+  for (const char* surface : {"smooth", "faceted"})
+    for (const bool slips : {false, true}) {
+      SCOPED_TRACE(surface + std::to_string(slips));
+      scene["contacts"]["sole"]["surface"] = surface;
+      if (!slips) scene["contacts"]["sole"].erase("friction");
+      if (slips) scene["contacts"]["sole"]["friction"] = 0.2;
+      expect_certificates(scene);
+      const auto exact = run(scene, "monolithic_al"), iterated = run(scene, "uzawa_al");
+      ASSERT_EQ(exact.status(), Status::converged) << exact.message();
+      ASSERT_EQ(iterated.status(), Status::converged) << iterated.message();
+      const double press = exact.steps.back().responses[0];
+      EXPECT_NEAR(iterated.steps.back().responses[0], press, 1e-6 * press);  // to its tolerance
+      for (const auto& step : exact.steps) EXPECT_LE(step.increment->newton, 15);
+    }
+}
+
 TEST_F(RigidTriangles, OfAMeshAreRefusedWithTheFaultOfTheMesh) {
   const auto fault_of = [&](const char* mesh, const char* side) {
     return faults(drawn_block("finite", side_of(mesh, side)));

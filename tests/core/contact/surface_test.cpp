@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <bit>
 #include <complex>
 #include <numbers>
 #include <random>
@@ -269,6 +270,46 @@ TEST(SurfaceSearch, EndsAtARidgeWhoseOtherFaceDoesNotOpposeTheSlave) {
     EXPECT_NE(search.facing({1.9, 1.0, -0.1}, {0, 0, -1}).patch, no_patch);
     EXPECT_EQ(search.facing({2.2, 1.0, -0.1}, {0, 0, -1}).patch, no_patch);
     EXPECT_NE(search.facing({2.2, 1.0, -0.1}, {-1, 0, -1}).patch, no_patch);  // both oppose this one
+  }
+}
+
+TEST(SurfaceSearch, RoundsOffEndsOverHalfOfASlaveFacet) {
+  // Top and wall of a box, as above, whose top ends at x = 2 at an edge, and at y = 0 at a border. Faces are 1 wide.
+  Net net = sheet(
+      3, 2, [](int i, int) { return i == 3 ? -1.0 : 0.0; }, [](int, int) { return false; });
+  for (Eigen::Index v = 0; v < net.points.cols(); ++v)
+    if (net.points(0, v) == 3) net.points(0, v) = 2;
+  const Vec<double, 3> down(0, 0, -1);
+  for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom}) {
+    const auto patches = make_surface<3>(net.faces, kind, 30, net.points);
+    const SurfaceSearch<3> search(patches, net.points);
+    for (const double size : {0.04, 0.6, 5.0}) {
+      const RoundedEnd<double> end(size, 1);
+      EXPECT_DOUBLE_EQ(end.to, smaller(size / 2, 0.5));
+      double last = 0;
+      for (int n = 1; n <= 40; ++n) {
+        const double by = end.to * (n - 0.5) / 40;
+        const bool is_far = by > end.furthest();
+        for (const double depth : {0.0, 0.01}) {
+          const Facing at_edge = search.facing({2 + by, 1.3, -depth}, down, false, size);
+          const Facing at_border = search.facing({0.4, -by, -depth}, down, false, size);
+          EXPECT_EQ(at_edge.patch == no_patch, is_far) << size << " " << by;
+          EXPECT_EQ(at_border.patch == no_patch, is_far);
+          if (is_far) continue;
+          EXPECT_EQ(at_edge.ends != 0, by > end.from);
+          EXPECT_EQ(at_border.ends != 0, by > end.from);
+        }
+        if (is_far || by <= end.from) continue;
+        const double term = rounding_off(end, by, size);
+        EXPECT_GT(term, last);
+        last = term;
+      }
+      EXPECT_NEAR(rounding_off(end, end.furthest(), size), 3.61 * size, 1e-12 * size);  // 0.01 (0.95 / 0.05)^2
+      const Facing at_corner = search.facing({2 + end.to / 2, -end.to / 2, 0.0}, down, false, size);
+      EXPECT_EQ(std::popcount(static_cast<unsigned>(at_corner.ends)), 2);
+      EXPECT_EQ(search.facing({2 - 1e-3, 1.3, -0.01}, down, false, size).ends, 0);
+      EXPECT_EQ(search.facing({2 + end.to / 2, 1.3, -0.01}, down, true, size).patch, no_patch);  // that comes on
+    }
   }
 }
 
