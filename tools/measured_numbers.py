@@ -7,8 +7,8 @@ quantities() below. The sign says how it is held against what the shipped studie
 
     =  rounded to the digits shown (counts: the same)
     ~  within a factor of three: what rounding decides differs between machines
-    <  a bound, up to ten thousand times what is measured: where rounding decides which augmentation is the last, an
-       error differs between machines by what one augmentation takes off, a factor of a hundred, up or down
+    <  a bound, up to a thousand times what is measured: where rounding decides which augmentation is the last, an error
+       differs between machines by what one augmentation takes off, a factor of a hundred
 
 A `%` behind the mark makes it a percentage. With --check nothing is written: exit code 1 where a number is stale, a name
 unknown, or a quantity on no page. Outputs in ```console blocks are not marked; tests/docs/replay.py compares those.
@@ -224,7 +224,7 @@ def agrees(sign, shown, value):
         return abs(number - value) <= 0.51 * last_place(shown) if set(".e") & set(shown) else number == round(value)
     if sign == "~":
         return abs(number) / 3 <= abs(value) <= 3 * abs(number)
-    return value <= number <= 10000 * value
+    return value <= number <= 1000 * value
 
 
 def renewed(text, values, faults, page=""):
