@@ -14,7 +14,7 @@
 /// With the derivative Dm by a parameter the change is -m / Dm away. At a tie (sensitivity/one_sided.hpp) the distance
 /// is zero on both sides. A derivative that is rounding changes nothing: such a point has no distance.
 ///
-/// Not counted are ends of segments, vertices of polylines at small strain, and open points that pass from one part of
+/// Not counted are ends of segments, vertices of obstacles at small strain, and open points that pass from one part of
 /// their master to the next.
 #pragma once
 

@@ -1,46 +1,80 @@
 #include "core/contact/foot_in_space.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <type_traits>
 
 #include "core/contact/gregory.hpp"
 
 namespace stickslip {
 namespace {
 
-/// Basis functions and the derivatives in PlaceWeights, a row a control point.
-PlaceWeights basis_at(const Patch<3>& patch, const Vec<double, 2>& at) {
-  using First = Dual<2>;
-  using Second = Dual<2, First>;
-  const auto seed = [&](int i) {
-    Second x(First::seed(at[i], i));
-    x.d[i] = First(1.0);
-    return x;
-  };
-  const Second s = seed(0), t = seed(1);
-  const auto fill = [&](int count, const auto& value, const auto& along_s, const auto& along_t) {
-    PlaceWeights n(count, 10);
-    for (int c = 0; c < count; ++c)
-      n.row(c) << value[c].v.v, along_s[c].v.v, along_t[c].v.v, along_s[c].v.d[0], along_s[c].v.d[1], along_t[c].v.d[1],
-          along_s[c].d[0].d[0], along_s[c].d[0].d[1], along_s[c].d[1].d[1], along_t[c].d[1].d[1];
+/// Coordinate i of a place, with the derivatives of T by the two coordinates.
+template <class T>
+T seeded(double at, int i) {
+  if constexpr (std::is_same_v<T, double>) {
+    return at;
+  } else {
+    using Inner = decltype(T::v);
+    return T::seed(seeded<Inner>(at, i), i);
+  }
+}
+
+bool is_beyond_edges(const Patch<3>& patch, const Vec<double, 2>& at) {
+  for (int k = 0; k < patch.corners; ++k)
+    if (beyond_edge(patch, k, at) > 0) return true;
+  return false;
+}
+
+/// The place of a patch from which it goes on to a place beyond its edges: of a quadrilateral the nearest in its
+/// coordinates; of a triangle that on the line to the corner across from the edge, or a corner if it is beyond two.
+template <class T>
+Vec<T, 2> place_before(const Patch<3>& patch, const Vec<T, 2>& at) {
+  const auto inside = [](const T& x) { return value(x) < 0 ? T(0) : x; };
+  if (patch.corners == 4) {
+    const auto from_end = [&](const T& x) { return T(T(1) - inside(T(T(1) - inside(x)))); };
+    return {from_end(at[0]), from_end(at[1])};
+  }
+  const T s = inside(at[0]), t = inside(at[1]), whole = s + t + inside(T(T(1) - at[0] - at[1]));
+  return {s / whole, t / whole};
+}
+
+/// Basis functions of a smooth patch, with slopes in T. Beyond its edges it goes on straight: its polynomials would
+/// fold there. With c = place_before(x) it is N(c) + N_s(c) (s - c_s) + N_t(c) (t - c_t).
+template <class T>
+detail::Basis<T> smooth_basis(const Patch<3>& patch, const Vec<double, 2>& at) {
+  if (!is_beyond_edges(patch, at))
+    return detail::gregory_basis<T>(patch.corners, seeded<T>(at[0], 0), seeded<T>(at[1], 1));
+  using U = Dual<2, T>;
+  const Vec<U, 2> place(seeded<U>(at[0], 0), seeded<U>(at[1], 1)), before = place_before<U>(patch, place);
+  const U way_s = place[0] - before[0], way_t = place[1] - before[1];
+  const auto edge = detail::gregory_basis<U>(patch.corners, before[0], before[1]);
+  detail::Basis<T> basis;
+  for (std::size_t k = 0; k < basis.value.size(); ++k) {
+    const U beyond = edge.value[k] + way_s * edge.along_s[k] + way_t * edge.along_t[k];
+    basis.value[k] = beyond.v;
+    basis.along_s[k] = beyond.d[0];
+    basis.along_t[k] = beyond.d[1];
+  }
+  return basis;
+}
+
+/// A row a control point, filled by put(row, value, along_s, along_t) from the basis functions with slopes in T.
+template <int columns, class T, class Put>
+Eigen::Matrix<double, Eigen::Dynamic, columns> basis_at(const Patch<3>& patch, const Vec<double, 2>& at, Put&& put) {
+  const auto fill = [&](int count, const auto& w) {
+    Eigen::Matrix<double, Eigen::Dynamic, columns> n(count, columns);
+    for (int c = 0; c < count; ++c) put(n.row(c), w.value[c], w.along_s[c], w.along_t[c]);
     return n;
   };
-  if (patch.control.size() == 0) {
-    const auto w = face_weights<Second>(patch.corners, s, t);
-    return fill(patch.corners, w.value, w.along_s, w.along_t);
-  }
-  const auto w = detail::gregory_basis<Second>(patch.corners, s, t);
-  return fill(detail::points_per_corner * patch.corners, w.value, w.along_s, w.along_t);
+  if (patch.is_smooth()) return fill(detail::points_per_corner * patch.corners, smooth_basis<T>(patch, at));
+  return fill(patch.corners, face_weights<T>(patch.corners, seeded<T>(at[0], 0), seeded<T>(at[1], 1)));
 }
 
 /// Basis functions with their slopes alone.
 Eigen::Matrix<double, Eigen::Dynamic, 3> slopes_at(const Patch<3>& patch, const Vec<double, 2>& at) {
-  const auto fill = [](int count, const auto& w) {
-    Eigen::Matrix<double, Eigen::Dynamic, 3> n(count, 3);
-    for (int c = 0; c < count; ++c) n.row(c) << w.value[c], w.along_s[c], w.along_t[c];
-    return n;
-  };
-  if (!patch.is_smooth()) return fill(patch.corners, face_weights<double>(patch.corners, at[0], at[1]));
-  return fill(detail::points_per_corner * patch.corners, detail::gregory_basis<double>(patch.corners, at[0], at[1]));
+  return basis_at<3, double>(patch, at,
+                             [](auto row, double n, double along_s, double along_t) { row << n, along_s, along_t; });
 }
 
 /// Of the vertices, from those of the control points.
@@ -50,10 +84,32 @@ auto of_vertices(const Patch<3>& patch, Rows rows) {
   return Rows(patch.control.transpose() * rows);
 }
 
+/// Shares of a way, ascending, between which it crosses no edge of a smooth patch, on the two sides of which it has
+/// other formulas.
+std::vector<double> parts_of(const Patch<3>& patch, const Vec<double, 2>& from, const Vec<double, 2>& to) {
+  std::vector<double> shares{0, 1};
+  for (int k = 0; k < patch.corners && patch.is_smooth(); ++k) {
+    const double before = beyond_edge(patch, k, from), after = beyond_edge(patch, k, to);
+    if (before * after < 0) shares.push_back(before / (before - after));
+  }
+  std::sort(shares.begin(), shares.end());
+  return shares;
+}
+
 }  // namespace
 
 PlaceWeights place_weights(const Patch<3>& patch, const Vec<double, 2>& at) {
-  return of_vertices(patch, basis_at(patch, at));
+  using Second = Dual<2, Dual<2>>;
+  return of_vertices(patch, basis_at<10, Second>(patch, at, [](auto row, const auto& n, const auto& s, const auto& t) {
+                       row << n.v.v, s.v.v, t.v.v, s.v.d[0], s.v.d[1], t.v.d[1], s.d[0].d[0], s.d[0].d[1], s.d[1].d[1],
+                           t.d[1].d[1];
+                     }));
+}
+
+CurvedWeights curved_weights(const Patch<3>& patch, const Vec<double, 2>& at) {
+  return of_vertices(patch, basis_at<6, Dual<2>>(patch, at, [](auto row, const auto& n, const auto& s, const auto& t) {
+                       row << n.v, s.v, t.v, s.d[0], s.d[1], t.d[1];
+                     }));
 }
 
 Eigen::VectorXd weights_moved(const Patch<3>& patch, const Vec<double, 2>& from, const Vec<double, 2>& to) {
@@ -68,13 +124,18 @@ Eigen::VectorXd weights_moved(const Patch<3>& patch, const Vec<double, 2>& from,
   constexpr std::array place{0.06943184420297371, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629};
   constexpr std::array share{0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693};
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(patch.is_smooth() ? patch.control.rows() : patch.corners);
-  for (std::size_t g = 0; g < place.size(); ++g)
-    moved += share[g] * slopes_at(patch, from + place[g] * way).rightCols<2>() * way;
+  const auto parts = parts_of(patch, from, to);
+  for (std::size_t part = 0; part + 1 < parts.size(); ++part) {
+    const double length = parts[part + 1] - parts[part];
+    for (std::size_t g = 0; g < place.size(); ++g)
+      moved +=
+          share[g] * length * slopes_at(patch, from + (parts[part] + length * place[g]) * way).rightCols<2>() * way;
+  }
   return of_vertices(patch, std::move(moved));
 }
 
-Mat<double, 2> foot_slope(const PlaceWeights& weights, const Eigen::Matrix3Xd& arms, const Vec<double, 3>& off) {
-  const Eigen::Matrix<double, 3, 5> y = arms * weights.middleCols<5>(1);
+Mat<double, 2> foot_slope(const PlaceSlopes& slopes, const Eigen::Matrix3Xd& arms, const Vec<double, 3>& off) {
+  const Eigen::Matrix<double, 3, 5> y = arms * slopes;
   Mat<double, 2> slope = y.leftCols<2>().transpose() * y.leftCols<2>();
   slope(0, 0) -= off.dot(y.col(2));
   slope(0, 1) -= off.dot(y.col(3));

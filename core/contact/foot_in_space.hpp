@@ -4,7 +4,8 @@
 ///
 /// Facets are triangles and bilinear quadrilaterals, smooth patches are those of Gregory on meshes with any number of
 /// faces at a node (formulas and sources: core/contact/gregory.cpp). Where four quadrilaterals meet at each node they
-/// are the tensor product of the splines of the plane.
+/// are the tensor product of the splines of the plane. Beyond its edges a smooth patch goes on straight, with the
+/// slopes that it has there.
 #pragma once
 
 #include "core/contact/face.hpp"
@@ -17,6 +18,9 @@ namespace stickslip {
 ///   N  N_s N_t  N_ss N_st N_tt  N_sss N_sst N_stt N_ttt
 using PlaceWeights = Eigen::Matrix<double, Eigen::Dynamic, 10>;
 PlaceWeights place_weights(const Patch<3>& patch, const Vec<double, 2>& at);
+/// Its columns up to the second derivatives.
+using CurvedWeights = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+CurvedWeights curved_weights(const Patch<3>& patch, const Vec<double, 2>& at);
 /// N at `to` less N at `from`, with the digits of the way between them.
 Eigen::VectorXd weights_moved(const Patch<3>& patch, const Vec<double, 2>& from, const Vec<double, 2>& to);
 
@@ -83,8 +87,10 @@ Vector<T> weights_at(const PlaceWeights& weights, const Vec<T, 2>& rest) {
   return n;
 }
 
+/// First and second derivatives of the weights of the vertices: columns 1 to 5 of PlaceWeights.
+using PlaceSlopes = Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 5>>;
 /// How (s, t) changes with (off . y_s, off . y_t), so that off = x - y stays perpendicular to both slopes.
-Mat<double, 2> foot_slope(const PlaceWeights& weights, const Eigen::Matrix3Xd& arms, const Vec<double, 3>& off);
+Mat<double, 2> foot_slope(const PlaceSlopes& slopes, const Eigen::Matrix3Xd& arms, const Vec<double, 3>& off);
 
 /// Foot of x on a patch, as in the plane. Initial positions are summed up apart from displacements at the reference,
 /// from which the way to the foot is measured.
@@ -95,7 +101,7 @@ SurfaceFoot<T, 3> foot_on_patch(const Patch<3>& patch, const FootReference& refe
   std::vector<Placed<T, S, 3>> placed;
   for (int v : patch.vertices) placed.push_back(vertex(v));
   const auto arm = [&](Eigen::Index i) -> Vec<T, 3> { return placed[i] - placed[0]; };
-  const Eigen::VectorXd of_reference = place_weights(patch, reference.at).col(0);
+  const Eigen::VectorXd of_reference = curved_weights(patch, reference.at).col(0);
   const Vec<S, 3> start =
       detail::weighted<S, S>(of_reference, [&](Eigen::Index i) -> Vec<S, 3> { return x.start - placed[i].start; });
   const Vec<T, 3> moved =
@@ -105,7 +111,7 @@ SurfaceFoot<T, 3> foot_on_patch(const Patch<3>& patch, const FootReference& refe
   const PlaceWeights weights = place_weights(patch, at);
   Eigen::Matrix3Xd arms(3, count);
   for (Eigen::Index i = 0; i < count; ++i) arms.col(i) = values(arm(i));
-  const Mat<double, 2> slope = foot_slope(weights, arms, values(off_at));
+  const Mat<double, 2> slope = foot_slope(weights.middleCols<5>(1), arms, values(off_at));
   SurfaceFoot<T, 3> foot;
   foot.place = {&patch, reference, at};
   Vec<T, 3> off = off_at;

@@ -4,7 +4,7 @@
 /// back on the surface, so that neither is an equilibrium. For this reason ends are rounded off: the gap of a node
 /// whose foot is beyond an end, on the patch extended, is
 ///
-///   g + 0.01 l (beta / (1 - beta))^2      beta = (b - b_0) / (b_1 - b_0)      b_1 = min(l / (2 w), 0.5)
+///   g + 0.01 l (1 / (1 - beta) - 1)^2      beta = (b - b_0) / (b_1 - b_0)      b_1 = min(l / (2 w), 0.5)
 ///
 ///   b     how far the foot is beyond the end, in coordinates of the patch (beyond_edge())
 ///   w     width of the patch there at the start, length
@@ -16,9 +16,7 @@
 /// the patch: the tangent is unsymmetric. Theory: core/README.md, Past a free end.
 #pragma once
 
-#include <vector>
-
-#include "core/mesh/mesh.hpp"
+#include "core/algebra/scalar.hpp"
 
 namespace stickslip {
 
@@ -29,19 +27,6 @@ namespace stickslip {
 inline constexpr double past_end_of_surface = 0.01;
 /// Share of a patch by which what is past its end, outside of a wall, is inside by it at most.
 inline constexpr double deepest_past_end = 0.25;
-
-/// Mean length of the edges of faces; 0 without faces. `points`: of all nodes.
-template <class T>
-T size_of_faces(const std::vector<std::vector<int>>& faces, const Points<T>& points) {
-  T size{};
-  int edges = 0;
-  for (const auto& face : faces)
-    for (std::size_t a = 0; a < face.size(); ++a, ++edges) {
-      const Vec<T, 3> along = points.col(face[a]) - points.col(face[(a + 1) % face.size()]);
-      size += norm(along);
-    }
-  return edges > 0 ? T(size / T(edges)) : T(0);
-}
 
 /// b_0 and b_1 (above).
 template <class T>
@@ -61,13 +46,21 @@ struct RoundedEnd {
   T furthest() const { return from + T(last) * (to - from); }
 };
 
-/// The term by which the gap is larger, length. `beyond`: b, between b_0 and that of beta = 1.
+/// The term by which the gap of a point is larger that leaves its surface: 0.01 l (q - 1)^2, length.
+///
+///   q  `fading`: 1 where the relief begins, infinite where the point has left
+///   l  `size`: length of the slave facets there
 template <class U, class T>
-U rounding_off(const RoundedEnd<T>& end, const U& beyond, const T& size) {
+U end_relief(const U& fading, const T& size) {
   constexpr double height = 0.01;
-  const U beta = (beyond - U(end.from)) / U(end.to - end.from);
-  const U ratio = beta / (U(1) - beta);
-  return U(T(height) * size) * ratio * ratio;
+  const U lacking = fading - U(1);
+  return U(T(height) * size) * lacking * lacking;
+}
+
+/// The same of a foot that is beyond an end by b, between b_0 and that of beta = 1: q = 1 / (1 - beta).
+template <class U, class T>
+U end_relief(const RoundedEnd<T>& end, const U& beyond, const T& size) {
+  return end_relief<U, T>(U(end.to - end.from) / (U(end.to) - beyond), size);
 }
 
 }  // namespace stickslip

@@ -32,10 +32,13 @@ struct RigidFacets {
   std::vector<std::vector<int>> facets;  ///< three or four vertices each, counter-clockwise seen from outside
 };
 
-/// A side of a mesh that is held rigid. The solid is that of the mesh.
+/// A side of a mesh that is held rigid. The solid is that of the mesh; a curve or surface that is on no body has it
+/// behind its facets.
 struct MeshSide {
   static constexpr bool is_in_plane = true, is_in_space = true, is_flat = false, has_facets = true;
-  static constexpr const char* if_turned = "take another side of its mesh: its solid is that of the mesh";
+  static constexpr const char* if_turned =
+      "take another side of its mesh, or turn the facets of its file round: the solid is that of the mesh, or behind "
+      "them";
   MeshDescription description;
   Mesh mesh;                             ///< made of the description
   std::vector<int> nodes;                ///< of the mesh, by vertex

@@ -194,19 +194,19 @@ Facing PatchSearch<2>::facing_nothing(const Vec<double, 2>& x) const {
   return {.distance = nearest.distance, .nearest = nearest.patch};
 }
 
-Facing PatchSearch<2>::facing_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own,
-                                     int last) const {
-  const Query query{x, outward, &own, last};
+Facing PatchSearch<2>::facing_itself(const Query& query) const {
   const Facing foot = settled(nearest_facing(query), query);
   // Newton's method may have left the eligible patches.
   if (foot.patch != no_patch && is_eligible(foot.patch, query)) return foot;
   return {.distance = size_};
 }
 
-int PatchSearch<2>::nearest_of_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own,
-                                      int last) const {
-  const int eligible = nearest_facet({x, outward, &own, last}).patch;
-  return eligible != no_patch ? eligible : nearest_facet({x, Vec<double, 2>::Zero(), &own, last}).patch;
+int PatchSearch<2>::nearest_of_itself(const Query& query) const {
+  const int eligible = nearest_facet(query).patch;
+  if (eligible != no_patch) return eligible;
+  Query any = query;
+  any.outward.setZero();
+  return nearest_facet(any).patch;
 }
 
 /// If x faces the vertex of two eligible patches, the place on the second. So rounding does not choose between them.

@@ -82,7 +82,7 @@ Eigen::Matrix3Xd PatchSearch<3>::arms(int patch, const Vec<double, 3>& x) const 
 }
 
 double PatchSearch<3>::gap(const Facing& at, const Vec<double, 3>& x) const {
-  const Eigen::Matrix3Xd y = arms(at.patch, x) * place_weights(patches_[at.patch], at.at).leftCols<3>();
+  const Eigen::Matrix3Xd y = arms(at.patch, x) * curved_weights(patches_[at.patch], at.at).leftCols<3>();
   return -y.col(0).dot(cross<double>(y.col(1), y.col(2)).normalized());
 }
 
@@ -102,7 +102,7 @@ Vec<double, 3> PatchSearch<3>::across(int patch) const {
 /// Normal of a patch at a foot, of any length.
 Vec<double, 3> PatchSearch<3>::normal(const Facing& at) const {
   const Eigen::Matrix3Xd y =
-      arms(at.patch, Vec<double, 3>::Zero()) * place_weights(patches_[at.patch], at.at).middleCols<2>(1);
+      arms(at.patch, Vec<double, 3>::Zero()) * curved_weights(patches_[at.patch], at.at).middleCols<2>(1);
   return cross<double>(y.col(0), y.col(1));
 }
 
@@ -116,16 +116,16 @@ Facing PatchSearch<3>::newton_foot(Facing at, const Vec<double, 3>& x, int hops)
   for (int step = 0; step < most; ++step) {
     const Patch<3>& patch = patches_[at.patch];
     const Vec<double, 2> from = at.at;
-    const PlaceWeights weights = place_weights(patch, from);
+    const CurvedWeights weights = curved_weights(patch, from);
     const Eigen::Matrix3Xd around = arms(at.patch, x);
     const Eigen::Matrix3Xd y = around * weights.leftCols<3>();
     const Vec<double, 3> off = -y.col(0);
     const Mat<double, 2> metric = y.rightCols<2>().transpose() * y.rightCols<2>();
-    Mat<double, 2> slope = foot_slope(weights, around, off);
+    Mat<double, 2> slope = foot_slope(weights.middleCols<5>(1), around, off);
     // Of slope as it was: 1 over that of the inverse.
     const double determinant = slope.determinant() * metric.determinant();
     const bool is_minimum = determinant > 0 && slope.trace() > 0 && determinant < 1e8;
-    if (!is_minimum) slope = foot_slope(weights, around, Vec<double, 3>::Zero());
+    if (!is_minimum) slope = foot_slope(weights.middleCols<5>(1), around, Vec<double, 3>::Zero());
     Vec<double, 2> move = slope * Vec<double, 2>(off.dot(y.col(1)), off.dot(y.col(2)));
     const double length = move.cwiseAbs().maxCoeff();
     if (!(length < std::numeric_limits<double>::infinity())) return {};
@@ -203,22 +203,18 @@ bool PatchSearch<3>::comes_after(const Facing& at, const OwnVertex& own) const {
   return number > own.vertex;
 }
 
-Facing PatchSearch<3>::facing_itself(const Vec<double, 3>& x, const Vec<double, 3>& outward, const OwnVertex& own,
-                                     int last, const Places<3>& start) const {
-  const Query query{x, outward, &own, last, &start};
-  const Facing foot = nearest_facing(query);
+Facing PatchSearch<3>::facing_itself(const Query& query) const {
+  const Facing foot = at_ends(nearest_facing(query), query);
   // Newton's method may have left the eligible patches.
-  if (foot.patch != no_patch && is_eligible(foot.patch, query) && comes_after(foot, own)) return foot;
+  if (foot.patch != no_patch && is_eligible(foot.patch, query) && comes_after(foot, *query.own)) return foot;
   return {.distance = faces_.size()};
 }
 
-int PatchSearch<3>::nearest_of_itself(const Vec<double, 3>& x, const Vec<double, 3>& outward, const OwnVertex& own,
-                                      int last, const Places<3>& start) const {
-  if (!x.allFinite()) return no_patch;
-  const Query query{x, outward, &own, last, &start};
+int PatchSearch<3>::nearest_of_itself(const Query& query) const {
+  if (!query.x.allFinite()) return no_patch;
   const auto may_touch = [&](int patch) { return may_be_touched(patch, query); };
   auto near = nearest_faces(query);
-  if (near.empty()) near = faces_.nearest(x, may_touch);
+  if (near.empty()) near = faces_.nearest(query.x, may_touch);
   return near.empty() ? no_patch : near.front().face;
 }
 

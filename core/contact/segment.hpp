@@ -1,5 +1,5 @@
-/// A mortar segment: unit of the integration of segment-integrated contact (core/contact/segments.hpp). Vertex v of a
-/// polyline counts as the node Model::node_count + v.
+/// A mortar segment: unit of the integration of segment-integrated contact (core/contact/segments.hpp). Vertex v of an
+/// obstacle counts as the node Model::node_count + v.
 #pragma once
 
 #include <array>

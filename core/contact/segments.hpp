@@ -156,7 +156,7 @@ ContactIntegrals<T, 2> integrate_segments(const std::vector<Segment>& segments, 
 }
 
 /// Nodes of a contact point, each once, in this order: `own`, the other slave nodes of `facets`, the master nodes of
-/// `segments`; of all only those below `node_count`, which are no vertices of a polyline.
+/// `segments`; of all only those below `node_count`, which are no vertices of an obstacle.
 std::vector<int> nodes_of_segments(int own, const std::vector<Segment>& facets, const std::vector<Segment>& segments,
                                    int node_count);
 
@@ -217,16 +217,8 @@ T area_of_facets(const std::vector<Segment>& facets, InitialPosition&& initial_p
   return integrate_segments<T, T>(facets, nodes, position, depth, here, [](auto&&...) {}).area;
 }
 
-/// s_0 of the relief (above).
+/// s_0 of the relief (above), which is end_relief() of s_0 / s.
 inline constexpr double relieved_share = 0.1;
-
-/// h of the relief (above), length. `share`: s, between 0 and s_0; `length`: l.
-template <class U, class T>
-U end_relief(const U& share, const T& length) {
-  constexpr double height = 0.01;
-  const U lacking = U(relieved_share) / share - U(1);
-  return U(T(height) * length) * lacking * lacking;
-}
 
 /// Distance of a slave node from a free end of the master, initial length, positive outside, at which 2 least_share of
 /// the area of its point faces the master: where a point that comes on begins to slide. Twice, because a point that

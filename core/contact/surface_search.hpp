@@ -17,6 +17,24 @@
 
 namespace stickslip {
 
+/// The question of the search: which place is nearest to x among the patches that may be faced?
+template <int D>
+struct SurfaceQuery {
+  Vec<double, D> x;
+  /// Outward normal of the slave side at x, any length. Only patches whose normal opposes it are eligible
+  /// (surfaces.hpp, opposes()); if it is zero, all patches are.
+  Vec<double, D> outward;
+  /// In space: size of the slave facets at x, by which ends are rounded off (past_end.hpp); 0: they are not.
+  double size = 0;
+  /// Of a vertex of a surface in contact with itself: what it may face; the patch that it faced in the last state; in
+  /// space the initial positions of the vertices.
+  const OwnVertex* own = nullptr;
+  int last = no_patch;
+  const Places<D>* start = nullptr;
+  /// Cosine by which a patch must oppose `outward`.
+  double least_against() const { return own ? stickslip::least_against : least_against_a_side; }
+};
+
 template <int D>
 class PatchSearch;
 
@@ -30,26 +48,18 @@ class PatchSearch;
 template <>
 class PatchSearch<2> {
  public:
+  using Query = SurfaceQuery<2>;
   /// What a vertex of this curve faces, which is in contact with itself. A patch is eligible if its normal makes more
   /// than 120 degrees with `outward`, and if `own` allows it. The vertex may penetrate a patch up to own.max_depth if
   /// the patch is within 8 patches of `last`, the patch that it faced in the last state; otherwise up to a quarter of
   /// that. If it faces nothing, the distance is the size of the curve, and the nearest patch is not looked for.
-  Facing facing_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
+  Facing facing_itself(const Query& query) const;
   /// The patch nearest to such a vertex: the nearest eligible one; if there is none, the nearest that `own` allows.
-  int nearest_of_itself(const Vec<double, 2>& x, const Vec<double, 2>& outward, const OwnVertex& own, int last) const;
+  int nearest_of_itself(const Query& query) const;
 
  protected:
   PatchSearch(const Surface<2>& patches, const Places<2>& positions);
 
-  /// The search's question: which place is nearest to x among the patches that oppose `outward`, if that is not zero?
-  /// `own`: set for contact of the curve with itself.
-  struct Query {
-    Vec<double, 2> x, outward;
-    const OwnVertex* own = nullptr;
-    int last = no_patch;
-    /// Cosine by which a patch must oppose `outward`.
-    double least_against() const { return own ? stickslip::least_against : least_against_a_side; }
-  };
   Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing from, const Vec<double, 2>& x, int hops) const;
   double gap(const Facing& foot, const Vec<double, 2>& x) const;
@@ -89,26 +99,16 @@ class PatchSearch<2> {
 template <>
 class PatchSearch<3> {
  public:
-  /// What a vertex of this surface faces, which is in contact with itself, as on a curve of the plane. `start`: initial
-  /// positions of the vertices. It may be inside by all of own.max_depth within 8 widths of patch `last` from its own
-  /// middle. The place that it faces comes after it (OwnVertex).
-  Facing facing_itself(const Vec<double, 3>& x, const Vec<double, 3>& outward, const OwnVertex& own, int last,
-                       const Places<3>& start) const;
-  int nearest_of_itself(const Vec<double, 3>& x, const Vec<double, 3>& outward, const OwnVertex& own, int last,
-                        const Places<3>& start) const;
+  using Query = SurfaceQuery<3>;
+  /// What a vertex of this surface faces, which is in contact with itself, as on a curve of the plane. It may be inside
+  /// by all of own.max_depth within 8 widths of patch `last` from its own middle. The place that it faces comes after
+  /// it (OwnVertex).
+  Facing facing_itself(const Query& query) const;
+  int nearest_of_itself(const Query& query) const;
 
  protected:
   PatchSearch(const Surface<3>& patches, const Places<3>& positions);
 
-  /// As on a curve. `start`: set with `own`. `size`: l of past_end.hpp; 0: ends are not rounded off.
-  struct Query {
-    Vec<double, 3> x, outward;
-    const OwnVertex* own = nullptr;
-    int last = no_patch;
-    const Places<3>* start = nullptr;
-    double size = 0;
-    double least_against() const { return own ? stickslip::least_against : least_against_a_side; }
-  };
   Facing nearest_facing(const Query& query) const;
   Facing newton_foot(Facing at, const Vec<double, 3>& x, int hops) const;
   double gap(const Facing& at, const Vec<double, 3>& x) const;
@@ -152,29 +152,23 @@ class SurfaceSearch : public PatchSearch<D> {
   /// `patches` and `positions` must outlive the search.
   SurfaceSearch(const Surface<D>& patches, const Places<D>& positions) : PatchSearch<D>(patches, positions) {}
 
-  /// The place of the surface that x faces; patch = no_patch where x lies past a border, or beyond a centre of
-  /// curvature. Then the distance to the nearest facet is set, and its patch; if x or what is near it is not finite, as
-  /// in an iterate that Newton rejects, the distance is infinite.
-  ///
-  ///   outward  outward normal of the slave side at x, any length. Only patches whose normal opposes it are eligible
-  ///            (surfaces.hpp, opposes()); if it is zero, all patches are
-  ///
-  ///   comes_on  it faced nothing in the last increment
-  ///   rounded   in space: size of the slave facets at x, by which ends are rounded off (past_end.hpp); 0: they are not
+  using Query = SurfaceQuery<D>;
+  /// The place of the surface that x faces; patch = no_patch where x lies past an end, or beyond a centre of curvature.
+  /// Then the distance to the nearest facet is set, and its patch; if x or what is near it is not finite, as in an
+  /// iterate that Newton rejects, the distance is infinite. `comes_on`: it faced nothing in the last increment.
   ///
   /// If the nearest of all patches has x outside of the solid, x is not inside of it by a farther patch. But outside of
   /// the wall of a block by no more than what is still faced past the end of its sole, x is inside by the sole. This
   /// does not hold for what comes on, as what a block that slides has before it, nor far inside, as beside a wall.
-  Facing facing(const Vec<double, D>& x, const Vec<double, D>& outward, bool comes_on = false,
-                double rounded = 0) const {
-    const Vec<double, D> any = Vec<double, D>::Zero();
-    const auto query = asked(x, outward, rounded);
+  Facing facing(const Query& query, bool comes_on = false) const {
+    const Vec<double, D>& x = query.x;
     Facing found = this->nearest_facing(query);
-    const double size = found.patch != no_patch ? this->size(found.patch) : 0;
-    if (found.patch != no_patch && outward != any && this->gap(found, x) < -mesh_file_rounding * size) {
-      const Facing nearest = this->nearest_facing({x, any});
-      const double beside = std::max(past_end_of_surface * size, 0.5 * rounded);
-      const bool may_be_past = !comes_on && this->gap(found, x) > -std::max(deepest_past_end * size, 0.5 * rounded);
+    const double size = found.patch != no_patch ? this->size(found.patch) : 0, rounded = 0.5 * query.size;
+    if (found.patch != no_patch && query.outward != Vec<double, D>::Zero() &&
+        this->gap(found, x) < -mesh_file_rounding * size) {
+      const Facing nearest = this->nearest_facing({x, Vec<double, D>::Zero(), query.size});
+      const double beside = std::max(past_end_of_surface * size, rounded);
+      const bool may_be_past = !comes_on && this->gap(found, x) > -std::max(deepest_past_end * size, rounded);
       const bool is_beside =
           may_be_past && nearest.patch != no_patch && !opposes<D>(this->normal(nearest), this->normal(found));
       const bool is_outside =
@@ -186,18 +180,10 @@ class SurfaceSearch : public PatchSearch<D> {
     return found.patch != no_patch ? found : this->facing_nothing(x);
   }
   /// The foot of x on one patch, which is extended past its edges.
-  Facing foot_on(int patch, const Vec<double, D>& x, const Vec<double, D>& outward = Vec<double, D>::Zero(),
-                 double rounded = 0) const {
-    const Facing foot = this->newton_foot({patch, this->middle_of(patch)}, x, 0);
-    if constexpr (D == 3) return this->at_ends(foot, asked(x, outward, rounded));
+  Facing foot_on(int patch, const Query& query) const {
+    const Facing foot = this->newton_foot({patch, this->middle_of(patch)}, query.x, 0);
+    if constexpr (D == 3) return this->at_ends(foot, query);
     return foot;
-  }
-
- private:
-  static auto asked(const Vec<double, D>& x, const Vec<double, D>& outward, [[maybe_unused]] double rounded) {
-    typename PatchSearch<D>::Query query{x, outward};
-    if constexpr (D == 3) query.size = rounded;
-    return query;
   }
 };
 

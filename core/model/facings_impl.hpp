@@ -19,6 +19,20 @@ int last_faced(const ContactInput<T>& input, int p) {
   return input.previous.faced[p] ? input.previous.patch[p] : no_patch;
 }
 
+/// The question what a point faces of a surface. `x`, `outward`: place of its slave node, and normal of the slave side
+/// there; `last`: as last_faced(). The point and the surface must outlive it.
+template <int D>
+SurfaceQuery<D> query_of(const ContactPoint& point, const MasterSurface& surface, const Vec<double, D>& x,
+                         const Vec<double, D>& outward, int last) {
+  const bool rounds_ends = D == 3 && surface.is_rigid();
+  SurfaceQuery<D> query{x, outward, rounds_ends ? point.mesh_size : 0};
+  if (point.own.vertex == no_vertex) return query;
+  query.own = &point.own;
+  query.last = last;
+  if constexpr (D == 3) query.start = &surface.start;
+  return query;
+}
+
 /// A surface where displacements have moved it, and the search along it. Places are from the first vertex at the start,
 /// so that what lies far from the origin is found as near it. An obstacle stays where it was at the start, and all else
 /// is seen from it. Not to be copied.
@@ -26,6 +40,7 @@ template <class T, int D>
 struct MovedSurface {
   using Place = Vec<double, D>;
   const ContactInput<T>& input;
+  const MasterSurface& surface;
   const Vector<T>& compact;  ///< displacements of the contact nodes
   Place origin;
   Frame<T, D> frame;  ///< that places are seen from
@@ -33,6 +48,7 @@ struct MovedSurface {
   /// All arguments must outlive this.
   MovedSurface(const ContactInput<T>& input, const MasterSurface& surface, const Vector<T>& compact)
       : input(input),
+        surface(surface),
         compact(compact),
         origin(values(positions().template vertex<D>(surface, 0).start)),
         frame(surface.is_rigid() ? positions().template frame<D>(surface.obstacle) : Frame<T, D>{}),
@@ -44,8 +60,14 @@ struct MovedSurface {
 
   const SurfaceSearch<D>& search() const { return own_ ? *own_ : still_->search; }
 
-  /// Place of the slave node of a point.
-  Place slave(const ContactPoint& point) const { return place(positions().template slave<D>(point)); }
+  /// The question what point p faces.
+  SurfaceQuery<D> query(int p) const {
+    const auto& point = input.model.points[p];
+    return query_of<D>(point, surface, place(positions().template slave<D>(point)), outward(point),
+                       last_faced(input, p));
+  }
+
+ private:
   /// Outward normal of the slave side at a point, by the sizes of its facets; zero where it has none.
   Place outward(const ContactPoint& point) const {
     const auto displacement = nodal_displacement<D>(compact);
@@ -63,8 +85,6 @@ struct MovedSurface {
     }
     return normal;
   }
-
- private:
   auto positions() const { return positions_at<D>(input.model, input.slots, compact, input.time); }
   Place place(const Placed<T, T, D>& at) const {
     return values(at.start) - origin + values(frame.seen(at.start, at.moved));
@@ -80,24 +100,6 @@ struct MovedSurface {
   std::shared_ptr<const StillSurface<D>> still_;  ///< of an obstacle
   std::optional<SurfaceSearch<D>> own_;  ///< of what has moved, or has other places than the model was made for
 };
-
-/// What a vertex of a side in contact with itself faces, and the nearest patch that it may face (PatchSearch).
-template <int D>
-Facing facing_itself(const SurfaceSearch<D>& search, const MasterSurface& side, const Vec<double, D>& x,
-                     const Vec<double, D>& outward, const OwnVertex& own, int last) {
-  if constexpr (D == 2)
-    return search.facing_itself(x, outward, own, last);
-  else
-    return search.facing_itself(x, outward, own, last, side.start);
-}
-template <int D>
-int nearest_of_itself(const SurfaceSearch<D>& search, const MasterSurface& side, const Vec<double, D>& x,
-                      const Vec<double, D>& outward, const OwnVertex& own, int last) {
-  if constexpr (D == 2)
-    return search.nearest_of_itself(x, outward, own, last);
-  else
-    return search.nearest_of_itself(x, outward, own, last, side.start);
-}
 
 /// Sets what the points of an integrated curve face.
 template <class T>
@@ -122,12 +124,6 @@ void find_moved_segments(const ContactInput<T>& input, int curve, const Vector<T
   find_segments(model, curve, start, moved, last, found);
 }
 
-/// Size by which ends are rounded off for a point (core/contact/past_end.hpp); 0: they are not, as those of bodies.
-template <int D>
-double size_of_ends(const ContactPoint& point) {
-  return D == 3 && point.obstacle >= 0 ? point.mesh_size : 0;
-}
-
 /// Sets what the points of a surface face; the arguments are those of facings().
 template <class T, int D>
 void find_along_surface(const ContactInput<T>& input, int surface, const Vector<T>& compact,
@@ -137,15 +133,11 @@ void find_along_surface(const ContactInput<T>& input, int surface, const Vector<
   for (int p = 0; p < static_cast<int>(found.size()); ++p) {
     const auto& point = model.points[p];
     if (point.surface != surface) continue;
-    const Vec<double, D> x = now.slave(point);
-    if (!kept.empty() && kept[p] != no_patch) {
-      found[p] = now.search().foot_on(kept[p], x, now.outward(point), size_of_ends<D>(point));
-      continue;
-    }
-    found[p] = point.own.vertex == no_vertex
-                   ? now.search().facing(x, now.outward(point), !input.previous.faced[p], size_of_ends<D>(point))
-                   : facing_itself(now.search(), model.surfaces[surface], x, now.outward(point), point.own,
-                                   last_faced(input, p));
+    const SurfaceQuery<D> query = now.query(p);
+    if (!kept.empty() && kept[p] != no_patch)
+      found[p] = now.search().foot_on(kept[p], query);
+    else
+      found[p] = query.own ? now.search().facing_itself(query) : now.search().facing(query, !input.previous.faced[p]);
   }
 }
 
@@ -172,8 +164,7 @@ void place_open_vertices_beside(const ContactInput<T>& input, const Vector<T>& c
     const MasterSurface& side = input.model.surfaces[point.surface];
     if (of != point.surface) now.emplace(input, side, compact);
     of = point.surface;
-    facing.nearest =
-        nearest_of_itself(now->search(), side, now->slave(point), now->outward(point), point.own, last_faced(input, p));
+    facing.nearest = now->search().nearest_of_itself(now->query(p));
     PlacedPoint<T, D> at;
     if (facing.nearest != no_patch)
       place_beside(positions_at<D>(input.model, input.slots, compact, input.time), point, facing.nearest, at);

@@ -85,7 +85,7 @@ U beyond_ends(const SurfaceFoot<U, 3>& foot, const Facing& facing, const T& size
   U term(0);
   for (int k = 0; k < patch.corners; ++k)
     if ((facing.ends >> k & 1) != 0)
-      term += rounding_off<U, T>({size, width_behind<T>(patch.corners, k, corner)}, beyond_edge(patch, k, at), size);
+      term += end_relief<U, T>({size, width_behind<T>(patch.corners, k, corner)}, beyond_edge(patch, k, at), size);
   return term;
 }
 
@@ -108,7 +108,7 @@ PlacedPoint<U, D> on_master(const Positions<U, T, Displacement>& positions, cons
   if constexpr (D == 3)
     if (facing.ends != 0) {
       at.geometry.gap +=
-          beyond_ends<U, T>(foot, facing, size_of_faces<T>(point.area_facets, positions.slots.points), vertex);
+          beyond_ends<U, T>(foot, facing, mean_edge_length<T>(point.area_facets, positions.slots.points), vertex);
       at.has_potential = false;
     }
   if (point.foot < 0) return at;

@@ -55,8 +55,8 @@ struct MasterSurface {
   std::variant<std::shared_ptr<const Surface<2>>, std::shared_ptr<const Surface<3>>> surface;
   /// Of an obstacle along which points slide: where it is at the start, and the search along it there.
   std::variant<std::shared_ptr<const StillSurface<2>>, std::shared_ptr<const StillSurface<3>>> still = {};
-  /// Segment-integrated contact: the two nodes of each patch, and the nodes at which the side ends. Vertices of a
-  /// polyline count as nodes behind those of the model (core/contact/segment.hpp).
+  /// Segment-integrated contact: the two nodes of each patch, and the nodes at which the side ends. Vertices of
+  /// an obstacle count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<std::vector<int>> facets = {};
   std::vector<int> ends = {};
   std::vector<std::array<int, 3>> edges = {};  ///< per facet: the side of a quadratic element that it is half of
@@ -88,7 +88,7 @@ struct MasterSurface {
 
 /// One slave node and its master. At small strain it does not change.
 struct ContactPoint {
-  /// Kind of master. facet, vertex: of a deformable side or a polyline; faces: of a deformable side in space; surface:
+  /// Kind of master. facet, vertex: of a curve, a body or an obstacle; faces: of a deformable side in space; surface:
   /// patches of a MasterSurface; segments: of any kind, by integrals over mortar segments, in space over overlaps.
   enum class Master { obstacle, facet, vertex, faces, segments, surface };
   Master master = Master::obstacle;
@@ -103,7 +103,7 @@ struct ContactPoint {
                             ///< of the facets whose end the projection is; faces: of all; surface: of the initial patch
   int slave_nodes = 1;      ///< number of slave nodes in `nodes`; more than 1 if segment-integrated
   std::vector<int> places;  ///< index of `nodes` in Model::contact_nodes
-  /// facet: its two ends; vertex: itself between its neighbours, whose facets share the normal. Vertices of a polyline
+  /// facet: its two ends; vertex: itself between its neighbours, whose facets share the normal. Vertices of an obstacle
   /// count as nodes behind those of the model (core/contact/segment.hpp).
   std::vector<int> corners;
   std::vector<FacePlace> faces;               ///< faces: the place that it faces, on each face that has it

@@ -179,19 +179,12 @@ class OwnVertices {
   std::optional<FaceSearch> faces_;  ///< in space
 };
 
-/// What a slave node faces of a surface at the start. Sets what it may face, if the surface is its own side; in space
-/// also this place on each patch that has it. `rounded`: as SurfaceSearch has it.
+/// What a slave node faces of a surface at the start; in space it sets this place on each patch that has it.
 template <int D>
-Facing facing_of(const SurfaceSearch<D>& search, const MasterSurface& master, const Vec<double, D>& x,
-                 const Vec<double, D>& outward, double rounded, ContactPoint& point) {
-  Facing facing;
-  if (point.own.vertex == no_vertex) {
-    facing = search.facing(x, outward, false, rounded);
-  } else {
-    facing = detail::facing_itself(search, master, x, outward, point.own, no_patch);
-    if (facing.patch == no_patch)
-      facing.nearest = detail::nearest_of_itself(search, master, x, outward, point.own, no_patch);
-  }
+Facing facing_of(const SurfaceSearch<D>& search, const MasterSurface& master, const SurfaceQuery<D>& query,
+                 ContactPoint& point) {
+  Facing facing = query.own ? search.facing_itself(query) : search.facing(query);
+  if (query.own && facing.patch == no_patch) facing.nearest = search.nearest_of_itself(query);
   if constexpr (D == 3)
     if (facing.patch != no_patch) point.starts = patches_at(master.patches<3>(), facing);
   return facing;
@@ -230,8 +223,9 @@ void pair_along_surface(Model& model, const Points<double>& points, const Pairin
       point.own = own->at(node, outward, point.mesh_size);
       if (!own->may_face_some(point.own)) continue;
     }
-    const double rounded = D == 3 && model.scene.finite_strain && master.is_rigid() ? point.mesh_size : 0;
-    point.facing = facing_of<D>(search, master, points.col(node), outward, rounded, point);
+    auto query = detail::query_of<D>(point, master, points.col(node), outward, no_patch);
+    if (!model.scene.finite_strain) query.size = 0;
+    point.facing = facing_of<D>(search, master, query, point);
     const bool faces = point.facing.patch != no_patch;
     if (!faces && !model.scene.finite_strain) continue;
     point.shares_normal = !model.scene.finite_strain && pairing.obstacle < 0 && has_side;

@@ -48,6 +48,17 @@ T tributary_area(const ContactPoint& point, const Slots<T>& slots) {
   return area;
 }
 
+/// Mean initial length of facets, in space of their edges; 0 without facets. `points`: of all nodes.
+template <class T>
+T mean_edge_length(const std::vector<std::vector<int>>& facets, const Points<T>& points) {
+  T sum{};
+  int edges = 0;
+  for (const auto& facet : facets)
+    for (std::size_t a = 0; a < facet.size(); ++a, ++edges)
+      sum += norm(points.col(facet[a]) - points.col(facet[(a + 1) % facet.size()]));
+  return edges > 0 ? T(sum / T(edges)) : T(0);
+}
+
 /// Initial area of a point, whether all of it faces the master or not. pre: present geometry, or the point is not
 /// segment-integrated.
 template <class T>

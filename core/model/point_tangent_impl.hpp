@@ -150,7 +150,7 @@ Eigen::MatrixXd jets_of(const ContactInput<T>& input, int p, const Facing& facin
   };
   add(Eigen::RowVectorXd::Unit(basis.cols(), 0));
   const auto add_place = [&](int patch, const Vec<double, 2>& at) {
-    const PlaceWeights weights = place_weights(surface.patches<3>()[patch], at);
+    const CurvedWeights weights = curved_weights(surface.patches<3>()[patch], at);
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(3, basis.cols());
     Eigen::Index vertex = 0;
     for_each_place(surface, patch, [&](int place) {

@@ -1,6 +1,7 @@
 /// Geometry of segment-integrated contact points, along master curves of the plane and against obstacles.
 #pragma once
 
+#include "core/contact/past_end.hpp"
 #include "core/model/placed_point.hpp"
 
 namespace stickslip::detail {
@@ -124,7 +125,8 @@ PlacedPoint<U, 2> on_segments(const Positions<U, T, Displacement>& positions, co
   at.geometry.gap += number(model.scene.contacts[point.contact].offset);
   if (along_curve && model.effects.current_geometry) {
     const U share = at.geometry.area / U(whole_area(point, earlier, slots));
-    if (value(share) < relieved_share) at.geometry.gap += end_relief<U, T>(share, length_of_facets(point, slots));
+    if (value(share) < relieved_share)
+      at.geometry.gap += end_relief<U, T>(U(relieved_share) / share, length_of_facets(point, slots));
   }
   return at;
 }

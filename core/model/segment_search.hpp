@@ -12,7 +12,7 @@ double area_share(const std::vector<Segment>& segments, const ContactPoint& poin
 /// Sets found[p] for each point p of an integrated curve.
 ///
 ///   curve  index in Model::surfaces
-///   start  initial positions of the nodes, D x nodes, length; if the master is a polyline, then those of its vertices
+///   start  initial positions of the nodes, D x nodes, length; if the master is an obstacle, then those of its vertices
 ///   moved  displacements likewise
 ///   last   of a side in contact with itself: per point, the patch that it faced in the last increment, or no_patch
 ///

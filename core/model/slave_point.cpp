@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/contact/past_end.hpp"
+#include "core/model/placed_point.hpp"
 
 namespace stickslip {
 namespace {
@@ -11,15 +11,6 @@ namespace {
 /// Whether all nodes of the sides of an element have a positive share of them. Of faces of six nodes corners have none,
 /// of eight a negative one.
 bool has_positive_shares(ElementShape shape) { return shape != ElementShape::tet10 && shape != ElementShape::hex20; }
-
-/// Mean length of the facets at a slave node, in space of their edges; 0 without facets.
-double local_size(const Points<double>& points, const ContactPoint& point) {
-  if (points.rows() == 3) return size_of_faces<double>(point.area_facets, points);
-  double size = 0;
-  for (const auto& facet : point.area_facets)
-    size += (points.col(facet[0]) - points.col(facet[1])).norm() / static_cast<double>(point.area_facets.size());
-  return size;
-}
 
 }  // namespace
 
@@ -35,7 +26,7 @@ ContactPoint slave_point(const Model& model, const Points<double>& points, const
   for (const auto& edge : has_positive_shares(shape) ? pairing.slave.edges : pairing.slave.facets)
     if (std::find(edge.begin(), edge.end(), node) != edge.end()) point.area_edges.push_back(edge);
   point.area_of_bar = shape == ElementShape::bar2 && pairing.slave.nodes.size() == 1 && point.area_facets.empty();
-  point.mesh_size = local_size(points, point);
+  point.mesh_size = detail::mean_edge_length<double>(point.area_facets, points);
   point.tie_length = 8 * unit_roundoff * (point.mesh_size + points.col(node).cwiseAbs().maxCoeff());
   // a node on the axis of revolution cannot slide
   const bool slides = model.scene.contacts[pairing.index].friction && !model.is_on_axis(points, node);

@@ -27,7 +27,7 @@ Shape shape_at(const Patch<3>& patch, const Vec<double, 2>& at, Vertex&& vertex)
   const Placed<double, double, 3> origin = vertex(patch.vertices[0]);
   for (std::size_t i = 0; i < patch.vertices.size(); ++i)
     arms.col(static_cast<Eigen::Index>(i)) = vertex(patch.vertices[i]) - origin;
-  const Eigen::Matrix<double, 3, 5> y = arms * place_weights(patch, at).middleCols<5>(1);
+  const Eigen::Matrix<double, 3, 5> y = arms * curved_weights(patch, at).middleCols<5>(1);
   const Eigen::Matrix<double, 3, 2> slopes = y.leftCols<2>();
   const Vec<double, 3> across = cross<double>(y.col(0), y.col(1));
   const double area = across.norm();

@@ -97,7 +97,7 @@ void find_master_inside(const Problem& problem, const State<double>& state, doub
   const double nothing = 1e-6 * reach + 8 * unit_roundoff * points.cwiseAbs().maxCoeff();
   const SurfaceSearch<2> search(slave.patches, slave.places);
   for_each_vertex(master, [&, &slots = slots](int, const PlanePlace& x, const PlanePlace& outward) {
-    const Facing facing = search.facing(x, outward);
+    const Facing facing = search.facing({x, outward});
     if (facing.patch == no_patch) return;
     const double depth = -slave.gap(facing, x) - slots.numbers(contact.offset) - press.penetration;
     if (!(depth > nothing) || depth <= measures.inside) return;

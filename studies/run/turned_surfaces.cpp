@@ -39,7 +39,7 @@ class StartingObstacle {
     std::optional<Seen> seen;
     if (search_) {
       const PlanePlace place = x.head<2>();
-      const Facing facing = search_->facing(place, PlanePlace::Zero());
+      const Facing facing = search_->facing({place, PlanePlace::Zero()});
       if (facing.patch == no_patch) return std::nullopt;
       const auto foot = foot_on_patch<double>(curve_.patches[facing.patch], facing.at, place, curve_.position());
       seen = {foot.normal, foot.gap};

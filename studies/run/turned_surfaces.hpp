@@ -1,4 +1,5 @@
-/// Obstacles that are turned inside out: points of a polyline in the wrong order, normals that point into the solid.
+/// Obstacles that are turned inside out: points of a polyline in the wrong order, facets or normals that point into the
+/// solid.
 #pragma once
 
 #include <optional>

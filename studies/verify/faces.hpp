@@ -170,9 +170,10 @@ class Faces {
   bool looks_away(int p, const Vec3& outward) const { return !opposes(boxes_[p][2], outward); }
 
   /// Whether the faces that oppose a side end at an edge of a patch.
-  bool ends(int p, int edge, const Vec3& outward) const {
+  bool ends(int p, int edge, const Seeker& seeker) const {
     const int other = patches_[p].beyond[edge];
-    return other == FacePatch::none || (other >= 0 && looks_away(other, outward));
+    if (other < 0) return other == FacePatch::none;
+    return own_ ? !own_->may_face(seeker, other, x_) : looks_away(other, seeker.outward);
   }
 
   /// How far a place is into what is rounded off of an end: 0 where that begins, 1 where the gap is infinite.
@@ -187,7 +188,7 @@ class Faces {
     const Eigen::VectorXd off = from_edges(patches_[p].sides(), s, t);
     double sum = 0;
     for (int j = 0; j < off.size(); ++j) {
-      if (seeker.rounded == 0 || !ends(p, j, seeker.outward)) continue;
+      if (seeker.rounded == 0 || !ends(p, j, seeker)) continue;
       const double into = std::max(0.0, into_end(p, j, -off[j], seeker));
       sum += 0.01 * seeker.rounded * std::pow(into / (1 - into), 2);
     }
@@ -202,7 +203,7 @@ class Faces {
     const Vec3& x = seeker.x;
     const Eigen::VectorXd off = from_edges(patches_[p].sides(), s, t);
     for (int j = 0; j < off.size(); ++j) {
-      const bool is_end = ends(p, j, seeker.outward), is_joint = finite_ && patches_[p].beyond[j] == FacePatch::smooth;
+      const bool is_end = ends(p, j, seeker), is_joint = finite_ && patches_[p].beyond[j] == FacePatch::smooth;
       if (!is_end && !is_joint) continue;
       if (is_end && seeker.rounded > 0 ? into_end(p, j, -off[j], seeker) <= 0.95 : off[j] > (finite_ ? -0.01 : at_end))
         continue;
@@ -238,7 +239,9 @@ class Faces {
     if (near[0].gap >= -1e-6 * edge || outward.isZero(0)) return true;
     auto all = closest(x, Vec3::Zero());
     const bool is_outside = std::ranges::any_of(all, [](const Near& at) { return at.gap > 0; });
-    if (!settle_on(all, {seeker.node, x})) return !is_outside;
+    Seeker any{seeker.node, x};
+    any.rounded = seeker.rounded;
+    if (!settle_on(all, any)) return !is_outside;
     const double half = seeker.rounded / 2;
     const bool is_beside =
         !seeker.comes_on && near[0].gap > -std::max(0.25 * edge, half) && !opposes(all[0].normal, near[0].normal);

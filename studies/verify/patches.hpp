@@ -42,28 +42,64 @@ inline Vec2 corner_at(int sides, int j) {
 }
 inline Vec2 edge_along(int sides, int j) { return corner_at(sides, j + 1) - corner_at(sides, j); }
 
-/// p^2 q / (p + q), how f+ of a corner is blended with f-; beyond an edge its Taylor polynomial of second order, and
-/// where p + q <= 0, which no edge is nearest to, that of the corner in the direction p = q.
-inline std::complex<double> blend_at_corner(std::complex<double> p, std::complex<double> q) {
-  const bool is_corner = (p + q).real() <= 0;
-  const auto p0 = is_corner || p.real() <= 0 ? 0.0 : p, q0 = is_corner || q.real() <= 0 ? 0.0 : q;
-  const auto a = is_corner ? 0.5 : p0 / (p0 + q0);
-  const auto b = 1.0 - a, dp = p - p0, dq = q - q0;
-  return p0 * q0 * a + q0 * a * (1.0 + b) * dp + p0 * a * a * dq + b * b * b * dp * dp +
-         a * a * (1.0 + 2.0 * b) * dp * dq - a * a * a * dq * dq;
+using Complex = std::complex<double>;
+
+/// p^2 q / (p + q), how f+ of a corner is blended with f-, and its slopes by p and q. p, q >= 0.
+inline std::array<Complex, 3> blend_at_corner(Complex p, Complex q) {
+  const Complex sum = p + q, a = sum == 0.0 ? 0.5 : p / sum;
+  return {p * q * a, q * a * (2.0 - a), p * a * a};
 }
 
-/// B_c. Of a triangle quartic in the middle.
-inline Eigen::VectorXcd blend(int sides, std::complex<double> s, std::complex<double> t) {
+/// B_c and their slopes by s and t, of a place of the patch. Of a triangle quartic in the middle.
+inline Eigen::MatrixX3cd blend_inside(int sides, Complex s, Complex t) {
   const Eigen::VectorXcd off = from_edges(sides, s, t);
-  Eigen::VectorXcd B(5 * sides);
+  Eigen::MatrixX3cd B(5 * sides, 3);
   for (int j = 0; j < sides; ++j) {
-    const auto u = off[(j + sides - 1) % sides], v = off[j];  // from the corner along its edge, and along that before
-    const auto P = sides == 3 ? 1.0 - u - v : (1.0 - u) * (1.0 - v), inner = (sides == 3 ? 12.0 : 9.0) * P * P;
-    B(Eigen::seqN(j, 5, sides)) << P * P * P, 3.0 * u * (1.0 - v) * P * P, 3.0 * v * (1.0 - u) * P * P,
-        inner * blend_at_corner(u, v), inner * blend_at_corner(v, u);
+    // u: from the corner along its edge; v: along that before. Both run straight, so their slopes are differences.
+    const int of_u = (j + sides - 1) % sides;
+    const auto u = off[of_u], v = off[j];
+    const auto slope = [&](int edge, const Vec2& along) {
+      return (from_edges(sides, along[0], along[1]) - from_edges(sides, 0.0, 0.0))[edge];
+    };
+    const auto P = sides == 3 ? 1.0 - u - v : (1.0 - u) * (1.0 - v);
+    const auto P_u = sides == 3 ? -1.0 : v - 1.0, P_v = sides == 3 ? -1.0 : u - 1.0;
+    const double n = sides == 3 ? 12.0 : 9.0;
+    const auto [f, f_u, f_v] = blend_at_corner(u, v);
+    const auto [g, g_v, g_u] = blend_at_corner(v, u);
+    Eigen::Matrix<Complex, 5, 3> in;                        // the functions, and their slopes by u and v
+    in << P * P * P, 3.0 * P * P * P_u, 3.0 * P * P * P_v,  //
+        3.0 * u * (1.0 - v) * P * P, 3.0 * (1.0 - v) * P * (P + 2.0 * u * P_u),
+        3.0 * u * P * (2.0 * (1.0 - v) * P_v - P),  //
+        3.0 * v * (1.0 - u) * P * P, 3.0 * v * P * (2.0 * (1.0 - u) * P_u - P),
+        3.0 * (1.0 - u) * P * (P + 2.0 * v * P_v),                                            //
+        n * P * P * f, n * P * (P * f_u + 2.0 * P_u * f), n * P * (P * f_v + 2.0 * P_v * f),  //
+        n * P * P * g, n * P * (P * g_u + 2.0 * P_u * g), n * P * (P * g_v + 2.0 * P_v * g);
+    const auto rows = Eigen::seqN(j, 5, sides);
+    B(rows, 0) = in.col(0);
+    for (int i = 0; i < 2; ++i) {
+      const Vec2 along = Vec2::Unit(i);
+      B(rows, 1 + i) = in.col(1) * slope(of_u, along) + in.col(2) * slope(j, along);
+    }
   }
   return B;
+}
+
+/// B_c. Beyond its edges a patch goes on straight from the nearest place of a quadrilateral in (s, t). In a triangle it
+/// does so from the place on the line to the corner across from the edge, or from the corner if it is beyond two.
+inline Eigen::VectorXcd blend(int sides, Complex s, Complex t) {
+  Eigen::VectorXcd off = from_edges(sides, s, t);
+  for (auto& from : off)
+    if (from.real() < 0) from = 0;
+  Complex from_s, from_t;
+  if (sides == 3) {
+    from_s = off[2] / off.sum();
+    from_t = off[0] / off.sum();
+  } else {
+    from_s = off[1].real() > 0 ? off[3] : 1.0;
+    from_t = off[2].real() > 0 ? off[0] : 1.0;
+  }
+  const Eigen::MatrixX3cd B = blend_inside(sides, from_s, from_t);
+  return B.col(0) + (s - from_s) * B.col(1) + (t - from_t) * B.col(2);
 }
 
 /// B_c and their derivatives by s and t: by steps along the imaginary axis, of which the square is nothing.

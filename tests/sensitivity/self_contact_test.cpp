@@ -57,7 +57,8 @@ TEST(SelfContact, FindsThatWithoutTryingTheWholeWall) {
     while (std::clock() - start < CLOCKS_PER_SEC / 20)
       for (const auto& own : owned) {
         const bool upper = own.vertex < pieces;
-        const auto at = search.facing_itself(fold.places.col(own.vertex), upper ? up : down, own, no_patch);
+        const auto at =
+            search.facing_itself({.x = fold.places.col(own.vertex), .outward = upper ? up : down, .own = &own});
         faced += at.patch != no_patch;
         ++searched;
       }
@@ -76,7 +77,8 @@ TEST(SelfContact, FacesTheOtherArmAndNotThroughTheWall) {
     const auto faced = [&](int vertex, const Vec<double, 2>& outward, const Vec<double, 2>& shift,
                            int last = no_patch) {
       const OwnVertex own = own_vertex(fold.patches, fold.places, vertex, outward, 0.5);
-      return search.facing_itself(fold.places.col(vertex) + shift, outward, own, last);
+      return search.facing_itself(
+          {.x = fold.places.col(vertex) + shift, .outward = outward, .own = &own, .last = last});
     };
     for (int k = 1; k < pieces; ++k) {
       // from the lower arm up: across the slit, however far it is and a bit inside; not once it is deep inside
@@ -143,7 +145,8 @@ TEST(SelfContact, InSpaceFacesTheOtherArmAndNotThroughTheWall) {
     const auto faced = [&](int vertex, double up, double shift, int last = no_patch) {
       const int v = fold.number[count + vertex];  // of the middle layer
       const Vec<double, 3> outward(0, up, 0), at = fold.places.col(v) + Vec<double, 3>(0, shift, 0);
-      return search.facing_itself(at, outward, own_vertex(faces, v, outward, 0.5), last, fold.places);
+      const OwnVertex own = own_vertex(faces, v, outward, 0.5);
+      return search.facing_itself({.x = at, .outward = outward, .own = &own, .last = last, .start = &fold.places});
     };
     for (int k = 1; k < pieces; ++k) {
       const Facing across = faced(k, 1, 0);

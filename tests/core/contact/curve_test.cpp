@@ -153,7 +153,7 @@ TEST(Curve, HasFeetAllAlongALongPatchBesideAShortOne) {  // its slope grows fast
       for (const double height : {-0.02 * ramp, 0.0, 0.5}) {
         const Place x(-3 + 0.05 * k, (-3 + 0.05 * k > 1.2 ? 0.1 * ramp : 0) + height);
         if (x[0] > 1.2 - ramp && x[0] < 1.2 + 2 * ramp) continue;
-        const Facing facing = search.facing(x, Place::Zero());
+        const Facing facing = search.facing({x, Place::Zero()});
         ASSERT_NE(facing.patch, no_patch) << ramp << " " << x.transpose();
         const auto foot = foot_on_patch<double>(patches[facing.patch], facing.at, x, where);
         EXPECT_NEAR(foot.gap, height, 0.01 * ramp) << x.transpose();  // flats are left by 0.003 of the ramp
@@ -191,7 +191,7 @@ TEST(Curve, FeetAreAtRightAnglesAndDifferentiateThroughTheirDefinition) {
     for (double angle : {0.1, 1.3, 4.0})
       for (double radius : {0.97, 1.05}) {
         const Place x(radius * std::cos(angle), radius * std::sin(angle));
-        const Facing facing = search.facing(x, Place::Zero());
+        const Facing facing = search.facing({x, Place::Zero()});
         ASSERT_NE(facing.patch, no_patch);
         const Patch<2>& patch = patches[facing.patch];
         const auto foot = foot_on_patch<double>(patch, facing.at, x, ring.where());
@@ -207,7 +207,8 @@ TEST(Curve, FeetAreAtRightAnglesAndDifferentiateThroughTheirDefinition) {
           const auto xi_at = [&](double h) {
             Place y = x;
             y[i] += h;
-            return foot_on_patch<double>(patch, search.foot_on(facing.patch, y).at, y, ring.where()).place.coordinate();
+            const Facing there = search.foot_on(facing.patch, {y, Place::Zero()});
+            return foot_on_patch<double>(patch, there.at, y, ring.where()).place.coordinate();
           };
           const double difference = (xi_at(1e-5) - xi_at(-1e-5)) / 2e-5;  // errs by 1e-10 f''' and rounding
           EXPECT_NEAR(c.place.coordinate().imag() / step, difference, 1e-7);
@@ -232,7 +233,7 @@ TEST(CurveSearch, FindsWhatTryingAllFinds) {
         const double xi = std::clamp((x - a).dot(tau) / tau.squaredNorm(), 0.0, 1.0);
         if (const double distance = (x - a - xi * tau).norm(); distance < least) least = distance;
       }
-      const Facing facing = search.facing(x, Place::Zero());
+      const Facing facing = search.facing({x, Place::Zero()});
       if (facing.patch == no_patch) {
         EXPECT_NEAR(facing.distance, least, 1e-14);
         continue;
@@ -253,7 +254,7 @@ TEST(CurveSearch, HasAContinuousGapAroundCornersOfBothKinds) {  // C24
   const SurfaceSearch<2> search(patches, places);
   const auto where = [&](int v) -> Place { return places.col(v); };
   const auto gap_at = [&](const Place& x) {
-    const Facing facing = search.facing(x, Place::Zero());
+    const Facing facing = search.facing({x, Place::Zero()});
     return foot_on_patch<double>(patches[facing.patch], facing.at, x, where).gap;
   };
   for (const Place& corner : {Place(1, 1), Place(1, 0)})
@@ -275,11 +276,11 @@ TEST(CurveSearch, IgnoresSidesThatLookTheSameWayAndWhatLiesPastAnEnd) {
   const auto patches = make_surface<2>({{0, 1}, {2, 3}}, Smoothing::none, 60, strip);
   const SurfaceSearch<2> search(patches, strip);
   const Place just_in(0.5, 0.004);
-  EXPECT_EQ(search.facing(just_in, Place(0, -1)).patch, 1);  // of a side that looks down: the upper face
-  EXPECT_EQ(search.facing(just_in, Place(0, 1)).patch, 0);
-  EXPECT_EQ(search.facing(just_in, Place::Zero()).patch, 0);  // the nearer one
-  EXPECT_EQ(search.facing(Place(1.1, 0.01), Place(0, -1)).patch, no_patch);
-  EXPECT_EQ(search.facing(Place(1 + 1e-7, 0.01), Place(0, -1)).patch, 1);
+  EXPECT_EQ(search.facing({just_in, Place(0, -1)}).patch, 1);  // of a side that looks down: the upper face
+  EXPECT_EQ(search.facing({just_in, Place(0, 1)}).patch, 0);
+  EXPECT_EQ(search.facing({just_in, Place::Zero()}).patch, 0);  // the nearer one
+  EXPECT_EQ(search.facing({Place(1.1, 0.01), Place(0, -1)}).patch, no_patch);
+  EXPECT_EQ(search.facing({Place(1 + 1e-7, 0.01), Place(0, -1)}).patch, 1);
 }
 
 TEST(CurveSearch, FacesNothingWhereATrialIsOutOfBounds) {
@@ -289,7 +290,7 @@ TEST(CurveSearch, FacesNothingWhereATrialIsOutOfBounds) {
     const auto patches = ring.patches(kind);
     const SurfaceSearch<2> search(patches, ring.places);
     for (const Place& x : {Place(nan, 0), Place(0, -nan), Place(std::numeric_limits<double>::infinity(), 0)}) {
-      const Facing facing = search.facing(x, Place::Zero());
+      const Facing facing = search.facing({x, Place::Zero()});
       EXPECT_EQ(facing.patch, no_patch);
       EXPECT_FALSE(std::isfinite(facing.distance));
     }
@@ -297,10 +298,10 @@ TEST(CurveSearch, FacesNothingWhereATrialIsOutOfBounds) {
       Eigen::Matrix2Xd places = ring.places;
       places(0, 3) = bad;
       places(0, 7) = -bad;
-      EXPECT_EQ(SurfaceSearch<2>(patches, places).facing(Place(1.1, 0), Place::Zero()).patch, no_patch);
+      EXPECT_EQ(SurfaceSearch<2>(patches, places).facing({Place(1.1, 0), Place::Zero()}).patch, no_patch);
     }
     const Eigen::Matrix2Xd collapsed = Eigen::Matrix2Xd::Ones(2, 12);
-    EXPECT_EQ(SurfaceSearch<2>(patches, collapsed).facing(Place(1.1, 0), Place::Zero()).patch, no_patch);
+    EXPECT_EQ(SurfaceSearch<2>(patches, collapsed).facing({Place(1.1, 0), Place::Zero()}).patch, no_patch);
   }
 }
 

@@ -79,6 +79,43 @@ TEST(Surface, WeightsSumToOneAndKeepAffineMaps) {
       }
 }
 
+/// Beyond its edges a patch goes on with the slopes that it has there, on straight lines across them. So it is smooth
+/// there, and folds nowhere.
+TEST(Surface, GoesOnStraightBeyondItsEdges) {
+  const Net net = crumpled();
+  constexpr double h = 1e-5;
+  // Of which column each column is a derivative, and by which coordinate.
+  constexpr std::array<int, 10> of{0, 0, 0, 1, 1, 2, 3, 3, 4, 5}, by{0, 0, 1, 0, 1, 1, 0, 1, 1, 1};
+  for (const Smoothing kind : smooth_kinds)
+    for (const auto& patch : make_surface<3>(net.faces, kind, no_creases, net.points)) {
+      for (const Vec<double, 2>& place : {Vec<double, 2>(-0.3, 0.4), Vec<double, 2>(0.2, -0.5),
+                                          Vec<double, 2>(0.7, 0.9), Vec<double, 2>(-0.2, -0.1)}) {
+        const PlaceWeights n = place_weights(patch, place);
+        EXPECT_LE(largest_entry(curved_weights(patch, place) - n.leftCols<6>()), 1e-14);  // rounding
+        for (int k = 1; k < 10; ++k) {
+          const Vec<double, 2> step = h * Vec<double, 2>::Unit(by[k]);
+          const Eigen::VectorXd difference =
+              (place_weights(patch, place + step).col(of[k]) - place_weights(patch, place - step).col(of[k])) / (2 * h);
+          EXPECT_LE(largest_entry(difference - n.col(k)), 1e-6) << k;  // h^2 times derivatives of some 1e3
+        }
+      }
+      for (int edge = 0; edge < patch.corners; ++edge) {
+        const Vec<double, 2> from = face_corner(patch.corners, edge), to = face_corner(patch.corners, edge + 1);
+        const Vec<double, 2> on_edge = from + 0.3 * (to - from);
+        const Vec<double, 2> across =
+            on_edge - face_corner(patch.corners, edge + 2);  // of a triangle the straight line
+        const Vec<double, 2> out = patch.corners == 3 ? across : Vec<double, 2>((to - from)[1], -(to - from)[0]);
+        const auto weights = [&](double share) -> PlaceWeights { return place_weights(patch, on_edge + share * out); };
+        EXPECT_LE(largest_entry((weights(1e-9) - weights(-1e-9)).leftCols<3>()), 1e-7) << edge;  // 2e-9 times some 10
+        const Eigen::VectorXd bend = weights(0.5).col(0) - 2 * weights(0.3).col(0) + weights(0.1).col(0);
+        EXPECT_LE(largest_entry(bend), 1e-13) << edge;  // rounding
+        const Vec<double, 2> inside = on_edge - 0.004 * out, outside = on_edge + 0.005 * out;
+        const Eigen::VectorXd moved = weights(0.005).col(0) - weights(-0.004).col(0);
+        EXPECT_LE(largest_entry(weights_moved(patch, inside, outside) - moved), 1e-14);  // rounding
+      }
+    }
+}
+
 TEST(Surface, NormalsAgreeAcrossEdgesWhereverTheNodesAre) {
   const Net net = crumpled();
   int edges = 0;
@@ -219,7 +256,7 @@ TEST(SurfaceSearch, FindsTheNearestPlaceOfSmoothSurfaces) {
     const Eigen::Matrix3Xd all = samples(patches, net.points);
     for (int n = 0; n < 200; ++n) {
       const Vec<double, 3> x(along(random), along(random), up(random));
-      const Facing found = search.facing(x, {0, 0, -1});
+      const Facing found = search.facing({x, {0, 0, -1}});
       ASSERT_NE(found.patch, no_patch);
       const auto& patch = patches[found.patch];
       for (int k = 0; k < patch.corners; ++k) EXPECT_LE(beyond_edge(patch, k, found.at), 1e-8);
@@ -239,12 +276,12 @@ TEST(SurfaceSearch, EndsAtBordersAndPassesCreasesContinuously) {
   for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom, Smoothing::b_spline}) {
     const auto patches = make_surface<3>(roof.faces, kind, 30, roof.points);
     const SurfaceSearch<3> search(patches, roof.points);
-    EXPECT_EQ(search.facing({1.0, 4.2, 0.0}, {0, 0, -1}).patch, no_patch);
-    EXPECT_NEAR(search.facing({1.0, 4.2, -1.0}, {0, 0, -1}).distance, 0.2, 1e-12);
+    EXPECT_EQ(search.facing({{1.0, 4.2, 0.0}, {0, 0, -1}}).patch, no_patch);
+    EXPECT_NEAR(search.facing({{1.0, 4.2, -1.0}, {0, 0, -1}}).distance, 0.2, 1e-12);
     double last = 0;
     for (int n = 0; n <= 100; ++n) {  // above the ridge, across it
       const Vec<double, 3> x(1.9 + 0.002 * n, 1.3, 0.2);
-      const Facing found = search.facing(x, {0, 0, -1});
+      const Facing found = search.facing({x, {0, 0, -1}});
       ASSERT_NE(found.patch, no_patch);
       const At foot = at(patches[found.patch], roof.points, found.at);
       const double gap = (x - foot.y).dot(foot.normal);
@@ -267,9 +304,9 @@ TEST(SurfaceSearch, EndsAtARidgeWhoseOtherFaceDoesNotOpposeTheSlave) {
   for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom}) {
     const auto patches = make_surface<3>(net.faces, kind, 30, net.points);
     const SurfaceSearch<3> search(patches, net.points);
-    EXPECT_NE(search.facing({1.9, 1.0, -0.1}, {0, 0, -1}).patch, no_patch);
-    EXPECT_EQ(search.facing({2.2, 1.0, -0.1}, {0, 0, -1}).patch, no_patch);
-    EXPECT_NE(search.facing({2.2, 1.0, -0.1}, {-1, 0, -1}).patch, no_patch);  // both oppose this one
+    EXPECT_NE(search.facing({{1.9, 1.0, -0.1}, {0, 0, -1}}).patch, no_patch);
+    EXPECT_EQ(search.facing({{2.2, 1.0, -0.1}, {0, 0, -1}}).patch, no_patch);
+    EXPECT_NE(search.facing({{2.2, 1.0, -0.1}, {-1, 0, -1}}).patch, no_patch);  // both oppose this one
   }
 }
 
@@ -291,8 +328,8 @@ TEST(SurfaceSearch, RoundsOffEndsOverHalfOfASlaveFacet) {
         const double by = end.to * (n - 0.5) / 40;
         const bool is_far = by > end.furthest();
         for (const double depth : {0.0, 0.01}) {
-          const Facing at_edge = search.facing({2 + by, 1.3, -depth}, down, false, size);
-          const Facing at_border = search.facing({0.4, -by, -depth}, down, false, size);
+          const Facing at_edge = search.facing({{2 + by, 1.3, -depth}, down, size});
+          const Facing at_border = search.facing({{0.4, -by, -depth}, down, size});
           EXPECT_EQ(at_edge.patch == no_patch, is_far) << size << " " << by;
           EXPECT_EQ(at_border.patch == no_patch, is_far);
           if (is_far) continue;
@@ -300,15 +337,15 @@ TEST(SurfaceSearch, RoundsOffEndsOverHalfOfASlaveFacet) {
           EXPECT_EQ(at_border.ends != 0, by > end.from);
         }
         if (is_far || by <= end.from) continue;
-        const double term = rounding_off(end, by, size);
+        const double term = end_relief(end, by, size);
         EXPECT_GT(term, last);
         last = term;
       }
-      EXPECT_NEAR(rounding_off(end, end.furthest(), size), 3.61 * size, 1e-12 * size);  // 0.01 (0.95 / 0.05)^2
-      const Facing at_corner = search.facing({2 + end.to / 2, -end.to / 2, 0.0}, down, false, size);
+      EXPECT_NEAR(end_relief(end, end.furthest(), size), 3.61 * size, 1e-12 * size);  // 0.01 (0.95 / 0.05)^2
+      const Facing at_corner = search.facing({{2 + end.to / 2, -end.to / 2, 0.0}, down, size});
       EXPECT_EQ(std::popcount(static_cast<unsigned>(at_corner.ends)), 2);
-      EXPECT_EQ(search.facing({2 - 1e-3, 1.3, -0.01}, down, false, size).ends, 0);
-      EXPECT_EQ(search.facing({2 + end.to / 2, 1.3, -0.01}, down, true, size).patch, no_patch);  // that comes on
+      EXPECT_EQ(search.facing({{2 - 1e-3, 1.3, -0.01}, down, size}).ends, 0);
+      EXPECT_EQ(search.facing({{2 + end.to / 2, 1.3, -0.01}, down, size}, true).patch, no_patch);  // that comes on
     }
   }
 }
@@ -347,7 +384,7 @@ TEST(Surface, ItsFootHasTheDerivativesOfTheSearch) {
     for (Eigen::Index v = 0; v < way.cols(); ++v)
       for (int k = 0; k < 3; ++k) way(k, v) = any(random);
     const Vec<double, 3> x(1.37, 2.21, 0.35), x_way(0.3, -0.2, 0.4);
-    const Facing facing = SurfaceSearch<3>(patches, net.points).facing(x, {0, 0, -1});
+    const Facing facing = SurfaceSearch<3>(patches, net.points).facing({x, {0, 0, -1}});
     ASSERT_NE(facing.patch, no_patch);
     constexpr double h = 1e-30;
     const auto vertex = [&](int v) -> Placed<Complex, double, 3> {
@@ -359,7 +396,7 @@ TEST(Surface, ItsFootHasTheDerivativesOfTheSearch) {
     const auto moved = [&](double by) {
       const Places<3> there = net.points + by * way;
       const Vec<double, 3> to = x + by * x_way;
-      const Facing found = SurfaceSearch<3>(patches, there).foot_on(facing.patch, to);
+      const Facing found = SurfaceSearch<3>(patches, there).foot_on(facing.patch, {to, Vec<double, 3>::Zero()});
       const At place = at(patches[facing.patch], there, found.at);
       return std::pair((to - place.y).dot(place.normal), place.normal);
     };
@@ -380,7 +417,7 @@ TEST(Surface, SmallMotionsOfAFootHaveTheirDigits) {
     // From a node, which four patches share, in four directions: the motion along the surface is what it is.
     const Vec<double, 3> node = net.points.col(12);
     const SurfaceSearch<3> search(patches, net.points);
-    const auto starts = patches_at(patches, search.facing(node, {0, 0, -1}));
+    const auto starts = patches_at(patches, search.facing({node, {0, 0, -1}}));
     ASSERT_EQ(starts.size(), 4U);
     const auto reference = [&](int patch) -> FootReference {
       for (const auto& start : starts)
@@ -392,7 +429,7 @@ TEST(Surface, SmallMotionsOfAFootHaveTheirDigits) {
       for (const auto& [a, b] :
            {std::pair(1.0, 0.6), std::pair(-1.0, 0.3), std::pair(-0.2, -1.0), std::pair(1.0, -0.4)}) {
         const Vec<double, 3> by = size * Vec<double, 3>(a, b, 0);
-        const Facing found = search.facing(node + by, {0, 0, -1});
+        const Facing found = search.facing({node + by, {0, 0, -1}});
         const auto foot =
             foot_on_patch<double, double>(patches[found.patch], reference(found.patch), found.at, {node, by}, vertex);
         const auto start =

@@ -65,9 +65,9 @@ TEST(Walls, AreNotPassedThroughToTheSoleBehind) {
   const auto patches = make_surface<2>({{0, 1}, {1, 2}}, Smoothing::none, 30, places);
   const SurfaceSearch<2> search(patches, places);
   const Vec<double, 2> up(0, 1);
-  EXPECT_EQ(search.facing({1.1, 1.5}, up).patch, no_patch);
-  EXPECT_EQ(search.facing({0.5, -0.1}, up).patch, 0);  // from below
-  EXPECT_EQ(search.facing({0.5, 0.1}, up).patch, 0);   // a little inside
+  EXPECT_EQ(search.facing({{1.1, 1.5}, up}).patch, no_patch);
+  EXPECT_EQ(search.facing({{0.5, -0.1}, up}).patch, 0);  // from below
+  EXPECT_EQ(search.facing({{0.5, 0.1}, up}).patch, 0);   // a little inside
 }
 
 }  // namespace
