@@ -20,7 +20,7 @@ struct Basis {
   std::array<T, 4 * points_per_corner> value{}, along_s{}, along_t{};
 };
 
-/// Basis functions and their derivatives by s and t at a place of a patch.
+/// Basis functions and their derivatives by s and t at a place of a patch, not beyond its edges.
 template <class T>
 Basis<T> gregory_basis(int corners, const T& s, const T& t);
 
@@ -43,23 +43,20 @@ struct Sloped {
   }
 };
 
-/// s^2 t / (s + t) of s, t >= 0. Inside of a patch only the ratio a = s / (s + t) is divided. The second derivatives
-/// 2 b^3, a^2 (1 + 2 b), -2 a^3 with b = 1 - a depend on a alone: beyond an edge the function goes on with those of the
-/// edge, and at the corner, where every direction has its own, with those of a = 1/2.
+/// s^2 t / (s + t) of s, t >= 0, but for rounding. Only the ratio a = s / (s + t) is divided. The second derivatives
+/// 2 b^3, a^2 (1 + 2 b), -2 a^3 with b = 1 - a depend on a alone. At the corner, where every direction has its own,
+/// they are those of a = 1/2.
 template <class T>
 Sloped<T> corner_bump(const Sloped<T>& s, const Sloped<T>& t) {
   constexpr double at_corner = 1e-9;
-  const double at_s = value(s.value), at_t = value(t.value);
   T phi, by_s, by_t;
-  if (at_s >= 0 && at_t >= 0 && at_s + at_t > at_corner) {
+  if (value(s.value) + value(t.value) > at_corner) {
     const T a = s.value / (s.value + t.value), b = T(1) - a;
     phi = s.value * t.value * a;
     by_s = s.value * b * (T(1) + b);
     by_t = s.value * a * a;
   } else {
-    const bool is_corner = std::max(std::abs(at_s), std::abs(at_t)) <= at_corner || at_s + at_t <= 0;
-    const double a = is_corner ? 0.5 : at_s < at_t ? 0 : 1, b = 1 - a;
-    const T ss(2 * b * b * b), st(a * a * (1 + 2 * b)), tt(-2 * a * a * a);
+    const T ss(0.25), st(0.5), tt(-0.25);
     by_s = ss * s.value + st * t.value;
     by_t = st * s.value + tt * t.value;
     phi = T(0.5) * (by_s * s.value + by_t * t.value);

@@ -204,7 +204,7 @@ bool PatchSearch<3>::comes_after(const Facing& at, const OwnVertex& own) const {
 }
 
 Facing PatchSearch<3>::facing_itself(const Query& query) const {
-  const Facing foot = at_ends(nearest_facing(query), query);
+  const Facing foot = nearest_facing(query);
   // Newton's method may have left the eligible patches.
   if (foot.patch != no_patch && is_eligible(foot.patch, query) && comes_after(foot, *query.own)) return foot;
   return {.distance = faces_.size()};

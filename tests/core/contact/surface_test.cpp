@@ -350,6 +350,29 @@ TEST(SurfaceSearch, RoundsOffEndsOverHalfOfASlaveFacet) {
   }
 }
 
+/// Past a rounded end a node that presses is inside of a surface, also where its facets are warped, whose planes say
+/// nothing of what is beside them.
+TEST(SurfaceSearch, FacesWarpedFacetsPastTheirRoundedEnds) {
+  const Net net = sheet(
+      3, 3, [](int i, int j) { return 0.02 * std::sin(2.1 * i + 1.7 * j); }, [](int, int) { return false; });
+  constexpr double size = 0.6;
+  const RoundedEnd<double> end(size, 1);
+  for (const Smoothing kind : {Smoothing::none, Smoothing::catmull_rom}) {
+    const auto patches = make_surface<3>(net.faces, kind, 30, net.points);
+    const SurfaceSearch<3> search(patches, net.points);
+    for (int patch = 0; patch < 3; ++patch)  // along the front
+      for (const double share : {0.2, 0.5, 0.9})
+        for (const double along : {0.3, 0.6})
+          for (const double depth : {1e-6, 1e-3}) {
+            const double by = end.from + share * (end.furthest() - end.from);
+            const At place = at(patches[patch], net.points, {along, -by});
+            const Facing found = search.facing({place.y - depth * place.normal, {0, 0, -1}, size});
+            EXPECT_EQ(found.patch, patch) << by << " " << along << " " << depth;
+            EXPECT_EQ(found.ends, 1);
+          }
+  }
+}
+
 TEST(Surface, CarriesTangentsWhateverTheirDirections) {
   // What a surface that is sheared and turned makes of tangents e is turned by as much as e are turned.
   const Vec<double, 3> s(1.2, 0.1, 0.05), t(-0.1, 0.8, 0.2);  // slopes of the last increment
