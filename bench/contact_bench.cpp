@@ -10,7 +10,7 @@
 #include "methods/newton/regularisation.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::contact_bench {
 namespace {
 
 /// A trial in the branch: closed by a pressure of 2, pulled by 1 (stick) or 5 (slip) at a friction of 0.6.
@@ -112,4 +112,4 @@ BENCHMARK_CAPTURE(all_tangents, stick, stick, true)->Arg(100);
 BENCHMARK_CAPTURE(all_tangents, slip, slip, true)->Arg(100);
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::contact_bench

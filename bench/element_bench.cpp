@@ -5,7 +5,7 @@
 #include "core/engine/engine.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::element_bench {
 namespace {
 
 template <class T>
@@ -76,4 +76,4 @@ BENCHMARK_CAPTURE(assembly, Q4, "Q4")->Apply(on_every_type);
 BENCHMARK_CAPTURE(assembly, Q8, "Q8")->Apply(on_every_type);
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::element_bench

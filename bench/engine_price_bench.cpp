@@ -10,7 +10,7 @@
 #include "sensitivity/differentiate.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::engine_price_bench {
 namespace {
 
 using Kind = LinearAlgebra::Engine;
@@ -68,4 +68,4 @@ const bool registered  // before main, as the BENCHMARK macros do
     = (register_all(), true);
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::engine_price_bench

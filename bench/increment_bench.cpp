@@ -8,7 +8,7 @@
 #include "sensitivity/differentiate.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::increment_bench {
 namespace {
 
 using Kind = LinearAlgebra::Engine;
@@ -119,4 +119,4 @@ const bool registered  // before main, as the BENCHMARK macros do
     = (register_all(), true);
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::increment_bench

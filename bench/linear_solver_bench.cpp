@@ -13,7 +13,7 @@
 
 #include "core/algebra/linear_solver.hpp"
 
-namespace stickslip {
+namespace stickslip::linear_solver_bench {
 namespace {
 
 enum class Kind { spd, stuck, sliding };
@@ -172,10 +172,10 @@ void register_all() {
 }
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::linear_solver_bench
 
 int main(int argc, char** argv) {
-  stickslip::register_all();
+  stickslip::linear_solver_bench::register_all();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::AddCustomContext("blas", stickslip::blas_name());

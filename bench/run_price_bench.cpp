@@ -20,7 +20,7 @@
 #include "sensitivity/differentiate.hpp"
 #include "tests/support/scenes.hpp"
 
-namespace stickslip {
+namespace stickslip::run_price_bench {
 namespace {
 
 using Kind = LinearAlgebra::Engine;
@@ -208,4 +208,4 @@ const bool registered  // before main, as the BENCHMARK macros do
     = (keep_freed_memory(), register_all(), true);
 
 }  // namespace
-}  // namespace stickslip
+}  // namespace stickslip::run_price_bench

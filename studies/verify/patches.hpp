@@ -50,9 +50,10 @@ inline std::array<Complex, 3> blend_at_corner(Complex p, Complex q) {
   return {p * q * a, q * a * (2.0 - a), p * a * a};
 }
 
-/// B_c and their slopes by s and t, of a place of the patch. Of a triangle quartic in the middle.
-inline Eigen::MatrixX3cd blend_inside(int sides, Complex s, Complex t) {
-  const Eigen::VectorXcd off = from_edges(sides, s, t);
+/// B_c and their slopes by s and t, of a place of the patch that is so far from its edges, none below 0. Of a triangle
+/// quartic in the middle.
+inline Eigen::MatrixX3cd blend_inside(const Eigen::VectorXcd& off) {
+  const int sides = static_cast<int>(off.size());
   Eigen::MatrixX3cd B(5 * sides, 3);
   for (int j = 0; j < sides; ++j) {
     // u: from the corner along its edge; v: along that before. Both run straight, so their slopes are differences.
@@ -87,19 +88,16 @@ inline Eigen::MatrixX3cd blend_inside(int sides, Complex s, Complex t) {
 /// B_c. Beyond its edges a patch goes on straight from the nearest place of a quadrilateral in (s, t). In a triangle it
 /// does so from the place on the line to the corner across from the edge, or from the corner if it is beyond two.
 inline Eigen::VectorXcd blend(int sides, Complex s, Complex t) {
-  Eigen::VectorXcd off = from_edges(sides, s, t);
+  Eigen::VectorXcd off = from_edges(sides, s, t);  // (not anew from where it begins: a rounding has either sign)
   for (auto& from : off)
     if (from.real() < 0) from = 0;
-  Complex from_s, from_t;
-  if (sides == 3) {
-    from_s = off[2] / off.sum();
-    from_t = off[0] / off.sum();
-  } else {
-    from_s = off[1].real() > 0 ? off[3] : 1.0;
-    from_t = off[2].real() > 0 ? off[0] : 1.0;
-  }
-  const Eigen::MatrixX3cd B = blend_inside(sides, from_s, from_t);
-  return B.col(0) + (s - from_s) * B.col(1) + (t - from_t) * B.col(2);
+  if (sides == 3)
+    off /= off.sum();
+  else
+    for (int j = 0; j < 4; ++j)
+      if (off[(j + 2) % 4] == 0.0) off[j] = 1;
+  const Eigen::MatrixX3cd B = blend_inside(off);
+  return B.col(0) + (s - off[sides - 1]) * B.col(1) + (t - off[0]) * B.col(2);
 }
 
 /// B_c and their derivatives by s and t: by steps along the imaginary axis, of which the square is nothing.

@@ -72,7 +72,7 @@ Amount amount_of(const Ledger& ledger, const std::string& effect, const std::str
         if (row.effect == effect && amount.name == name) return amount;
   throw std::out_of_range(effect);
 }
-double memory_of(const Ledger& ledger, const std::string& effect, const std::string& name) {
+double bytes_of(const Ledger& ledger, const std::string& effect, const std::string& name) {
   return amount_of(ledger, effect, name).value;
 }
 
@@ -88,9 +88,9 @@ TEST_P(LetGo, AndTheMemoryIsForetold) {
     EXPECT_LE(after.value, before.value * before.spread) << effect << name;
     EXPECT_GE(after.value, before.value / before.spread) << effect << name;
   }
-  EXPECT_LT(memory_of(kept, "bodies", "states"), 0.6 * memory_of(ledger(all.result), "bodies", "states"));
-  EXPECT_GT(memory_of(kept, "adjoint_sensitivity", "states"), 0);
-  EXPECT_EQ(memory_of(ledger(all.result), "adjoint_sensitivity", "states"), 0);
+  EXPECT_LT(bytes_of(kept, "bodies", "states"), 0.6 * bytes_of(ledger(all.result), "bodies", "states"));
+  EXPECT_GT(bytes_of(kept, "adjoint_sensitivity", "states"), 0);
+  EXPECT_EQ(bytes_of(ledger(all.result), "adjoint_sensitivity", "states"), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, LetGo, testing::Values("belt", "plastic_bar", "ironing"),

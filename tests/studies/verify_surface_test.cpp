@@ -138,6 +138,24 @@ TEST(VerifySurface, HasDerivativesThatAreThoseOfItsValues) {
       }
 }
 
+// At a corner, and past it along an edge, distances to edges are zero but for rounding. (Beyond two edges slopes are
+// others.)
+TEST(VerifySurface, HasTheSlopesOfItsCornersBesideThemToo) {
+  for (const int sides : {3, 4})
+    for (const double past : {0.0, 1e-3, 0.068})
+      for (const double off : {-1e-16, -5.7e-18, 5.7e-18, 1e-16}) {
+        if (past > 0 && off < 0) continue;
+        for (int j = 0; j < sides; ++j)
+          for (const bool along_this : {false, true}) {
+            const Vec2 along = along_this ? edge_along(sides, j) : Vec2(-edge_along(sides, (j + sides - 1) % sides)),
+                       across = along_this ? Vec2(-edge_along(sides, (j + sides - 1) % sides)) : edge_along(sides, j),
+                       at = corner_at(sides, j) - past * along;
+            const Eigen::MatrixX3d exact = blend(sides, at);
+            EXPECT_LE(largest_entry(blend(sides, at + off * across) - exact), rounding) << sides << past << off << j;
+          }
+      }
+}
+
 /// Normals agree whatever nodes do after weights are made.
 TEST(VerifySurface, HasNoKinksInside) {
   for (Mesh mesh : {ball(4, 1), grid(5, true, 0.1)}) {

@@ -5,6 +5,7 @@
 
 #include "core/model/response.hpp"
 #include "tests/support/both_modes.hpp"
+#include "tests/support/derivatives.hpp"
 #include "tests/support/largest.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/solved.hpp"
@@ -30,25 +31,61 @@ inline std::vector<Method> finite_schemes() {
   return {penalty, iterated, truncated, preconditioned, MonolithicAL{}};
 }
 
-/// Derivatives of all responses at all increments equal the complex step of the whole run: to 1e-10 of the largest
-/// where the scheme is exact, to 1e-9 where it is iterated to 1e-10, and to 50 u cond where that is more.
+/// Sizes of the derivatives of responses by parameters: the largest of all increments, and the response at the end over
+/// the parameter.
+inline Matrix<double> sizes_of_derivatives(const Solved& s) {
+  const auto last = evaluate_responses(s.model, s.slots, s.trajectory.increments.back().state, s.model.times.back());
+  const auto& parameters = s.model.scene.parameters;
+  Matrix<double> sizes(last.size(), parameters.size());
+  for (Eigen::Index j = 0; j < sizes.cols(); ++j)
+    sizes.col(j) = parameters[j].value != 0 ? Vector<double>(last.cwiseAbs() / std::abs(parameters[j].value))
+                                            : Vector<double>(Vector<double>::Zero(last.size()));
+  for (const auto& gradient : s.gradients.of_responses)
+    for (Eigen::Index k = 0; k < sizes.size(); ++k)
+      sizes.data()[k] = larger(sizes.data()[k], std::abs(gradient.data()[k]));
+  return sizes;
+}
+
+/// Derivatives of all responses at all increments equal the complex step of the whole run: to 1e-10 of their sizes
+/// where the scheme is exact, to 1e-9 where it is iterated to 1e-10, and to 50 u cond where that is more. One run moves
+/// all parameters, each by so much that some response changes as much as by another, so that a wrong derivative is lost
+/// in no other. Where it differs, a run for each parameter says which is wrong.
 inline void expect_derivatives_of_the_oracle(const Scene& scene, const Method& method) {
   const auto s = run(scene, method);
   ASSERT_TRUE(is_converged(s.trajectory.status)) << name_of(method) << s.trajectory.message;
   ASSERT_EQ(s.gradients.of_responses.size(), s.trajectory.increments.size()) << s.gradients.message;
   const double allowed =
       std::max(std::holds_alternative<UzawaAL>(method) ? 1e-9 : 1e-10, 50 * unit_roundoff * s.condition);
-  const auto last = evaluate_responses(s.model, s.slots, s.trajectory.increments.back().state, s.model.times.back());
-  for (int j = 0; j < static_cast<int>(s.model.scene.parameters.size()); ++j) {
-    const auto exact = oracle::complex_step(s.model, method, s.trajectory.step_table(), j);
-    for (Eigen::Index r = 0; r < exact.rows(); ++r) {
-      const double scale = std::max(largest_entry(exact.row(r)), std::abs(last[r] / s.model.scene.parameters[j].value));
-      for (Eigen::Index n = 0; n < exact.cols(); ++n)
-        EXPECT_NEAR(s.gradients.of_responses[n](r, j), exact(r, n), allowed * scale)
-            << name_of(method) << " " << s.model.scene.responses[r].name << " by " << s.model.scene.parameters[j].name
-            << ", increment " << n;
+  const Matrix<double> sizes = sizes_of_derivatives(s);
+  // Largest difference along a motion of the parameters, over what is allowed.
+  const auto difference = [&](const Vector<double>& motion) {
+    const auto exact = oracle::complex_step(s.model, method, s.trajectory.step_table(), motion);
+    const Vector<double> scale = sizes * motion.cwiseAbs();
+    double worst = 0;
+    for (Eigen::Index n = 0; n < exact.cols(); ++n) {
+      const Vector<double> found = s.gradients.of_responses[n] * motion;
+      for (Eigen::Index r = 0; r < exact.rows(); ++r)
+        if (found[r] != exact(r, n)) worst = larger(worst, std::abs(found[r] - exact(r, n)) / (allowed * scale[r]));
     }
+    return worst;
+  };
+  const auto& parameters = s.model.scene.parameters;
+  const Eigen::Index count = sizes.cols();
+  Vector<double> values(count), motion = derivatives::arbitrary(static_cast<int>(count));
+  for (Eigen::Index j = 0; j < count; ++j) values[j] = std::abs(parameters[j].value);
+  const Matrix<double> changes = sizes * values.asDiagonal();
+  for (Eigen::Index j = 0; j < count; ++j) {
+    double relative = 0;
+    for (Eigen::Index r = 0; r < sizes.rows(); ++r)
+      if (const double change = largest_entry(changes.row(r)); change > 0)
+        relative = larger(relative, sizes(r, j) / change);
+    motion[j] = (motion[j] + std::copysign(1.0, motion[j])) / relative;  // 1 to 2 either way
   }
+  const double worst = difference(motion);
+  if (worst <= 1) return;
+  ADD_FAILURE() << name_of(method) << ": the derivatives differ by " << worst << " times what is allowed";
+  for (Eigen::Index j = 0; j < count; ++j)
+    EXPECT_LE(difference(Vector<double>::Unit(count, j)), 1) << name_of(method) << ": by " << parameters[j].name;
 }
 
 /// The same, and the adjoint of all objectives equals the direct derivatives: to 1e-11 of the largest by what is

@@ -13,16 +13,14 @@ namespace stickslip::oracle {
 
 using Complex = std::complex<double>;
 
-Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table, int j) {
-  RunOptions replay;
-  replay.replay = step_table;
-  return complex_step(model, method, replay, j);
-}
+namespace {
 
-Matrix<double> complex_step(const Model& model, const Method& method, const RunOptions& replay, int j) {
+Matrix<double> along(const Vector<double>& motion, const Model& model, const Method& method, const RunOptions& replay) {
   constexpr double h = 1e-30;
   auto numbers = model.scene.as<Complex>();
-  for (const auto& [slot, weight] : model.scene.parameters[j].slots) numbers.at_slot[slot] += Complex(0, h * weight);
+  for (std::size_t j = 0; j < model.scene.parameters.size(); ++j)
+    for (const auto& [slot, weight] : model.scene.parameters[j].slots)
+      numbers.at_slot[slot] += Complex(0, h * weight * motion[static_cast<Eigen::Index>(j)]);
   const auto slots = make_slots<Complex>(model, numbers);
   RunOptions options = replay;
   options.linear_algebra.engine = LinearAlgebra::Engine::sparse;
@@ -36,6 +34,28 @@ Matrix<double> complex_step(const Model& model, const Method& method, const RunO
     for (Eigen::Index i = 0; i < responses.size(); ++i) out(i, n) = responses[i].imag() / h;
   }
   return out;
+}
+
+RunOptions repeated(const std::vector<double>& step_table) {
+  RunOptions replay;
+  replay.replay = step_table;
+  return replay;
+}
+
+}  // namespace
+
+Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table,
+                            const Vector<double>& motion) {
+  return along(motion, model, method, repeated(step_table));
+}
+
+Matrix<double> complex_step(const Model& model, const Method& method, const RunOptions& replay, int j) {
+  return along(Vector<double>::Unit(static_cast<Eigen::Index>(model.scene.parameters.size()), j), model, method,
+               replay);
+}
+
+Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table, int j) {
+  return complex_step(model, method, repeated(step_table), j);
 }
 
 }  // namespace stickslip::oracle

@@ -8,8 +8,11 @@
 
 namespace stickslip::oracle {
 
-/// Derivatives of all responses with respect to parameter j at every increment of a replayed run: responses x
-/// increments. `replay`: what is repeated, and where it begins.
+/// Derivatives of all responses along a motion of all parameters at every increment of a replayed run: responses x
+/// increments. `motion`: per parameter.
+Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table,
+                            const Vector<double>& motion);
+/// The same with respect to parameter j. `replay`: what is repeated, and where it begins.
 Matrix<double> complex_step(const Model& model, const Method& method, const RunOptions& replay, int j);
 /// The same of increments that begin where the last one ended.
 Matrix<double> complex_step(const Model& model, const Method& method, const std::vector<double>& step_table, int j);

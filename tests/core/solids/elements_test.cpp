@@ -88,8 +88,8 @@ class Elements : public testing::Test {
   const Local X = distorted<Shape>();
 
   template <class T>
-  static At<T> forces(const At<T>& at, const At<T>& u, const T& depth = T(1)) {
-    return element_forces<T, Shape, kinematics>(law<T>(kinematics), at, u, depth);
+  static At<T> forces(const At<T>& at, const At<T>& u) {
+    return element_forces<T, Shape, kinematics>(law<T>(kinematics), at, u);
   }
   /// (of dynamic size, so that what is made of it is compiled once)
   static Matrix<double> tangent(const Local& at) {
@@ -184,30 +184,6 @@ TEST(Quadrature, WithFewerPointsWouldLeaveMotionsWithoutEnergy) {
   EXPECT_EQ(zeros(solid), 60 - 6 * 8);  // six rigid and six more
   EXPECT_EQ(zeros(plane), 4);           // three rigid, one hourglass
   EXPECT_EQ(zeros(revolved), 2);        // one rigid, a rotation about the point
-}
-
-TYPED_TEST(Elements, HaveTheDerivativesOfTheComplexStepWithRespectToShapeAndThickness) {
-  constexpr int dofs = TestFixture::dofs;
-  constexpr bool reads_thickness = TestFixture::dimension == 2 && !TestFixture::revolved;
-  using Complex = std::complex<double>;
-  using D = Dual<1>;
-  const auto u = arbitrary<typename TestFixture::Shape>();
-  for (int k = 0; k <= dofs; ++k) {
-    typename TestFixture::template At<D> X = this->X.unaryExpr([](double x) { return D(x); }),
-                                         v = u.unaryExpr([](double x) { return D(x); });
-    typename TestFixture::template At<Complex> Z = this->X.template cast<Complex>(), w = u.template cast<Complex>();
-    D thickness(0.7);
-    Complex depth(0.7);
-    (k < dofs ? X.data()[k] : thickness).d[0] = 1;
-    (k < dofs ? Z.data()[k] : depth) += Complex(0, 1e-30);  // its square is lost beside one
-    const auto dual = TestFixture::template forces<D>(X, v, thickness);
-    const auto oracle = TestFixture::template forces<Complex>(Z, w, depth);
-    double largest = 0;
-    for (int i = 0; i < dofs; ++i) largest = larger(largest, std::abs(oracle.data()[i].imag() / 1e-30));
-    for (int i = 0; i < dofs; ++i)  // some hundred operations
-      EXPECT_NEAR(dual.data()[i].d[0], oracle.data()[i].imag() / 1e-30, 1000 * epsilon * (largest + E));
-    EXPECT_EQ(largest > 0, k < dofs || reads_thickness) << k;
-  }
 }
 
 template <class Shape, Kinematics kinematics>
