@@ -39,19 +39,43 @@ Vec<T, 2> place_before(const Patch<3>& patch, const Vec<T, 2>& at) {
   return {s / whole, t / whole};
 }
 
+/// The way w in the coordinates of a patch from `before`, the place before `at`: at - before = -b v beyond an edge by
+/// b, with v across it, in a triangle to the corner across from it. Beyond an end it is -b (along e + across v), with e
+/// along the edge and shares that are linear between its two (WayBeyond).
+template <class T>
+Vec<T, 2> way_beyond(const Patch<3>& patch, const Vec<T, 2>& at, const Vec<T, 2>& before) {
+  const auto corner = [&](int k) -> Vec<double, 2> { return face_corner(patch.corners, k); };
+  Vec<T, 2> way = at - before;
+  for (int k = 0; k < patch.corners; ++k) {
+    const T by = beyond_edge(patch, k, at);
+    if (patch.goes_on(k) || value(by) <= 0) continue;
+    const auto& [first, last] = patch.beyond[k];
+    const Vec<double, 2> e = corner(k + 1) - corner(k);
+    T share(0);
+    for (int i = 0; i < 2; ++i) share += (before[i] - T(corner(k)[i])) * T(e[i] / e.squaredNorm());
+    const T along = T(first.along) + T(last.along - first.along) * share,
+            across = T(first.across) + T(last.across - first.across) * share;
+    for (int i = 0; i < 2; ++i) {
+      const T v = patch.corners == 3 ? T(corner(k + 2)[i]) - before[i] : T(i == 0 ? -e[1] : e[0]);
+      way[i] -= by * (along * T(e[i]) + (across - T(1)) * v);
+    }
+  }
+  return way;
+}
+
 /// Basis functions of a smooth patch, with slopes in T. Beyond its edges it goes on straight: its polynomials would
-/// fold there. With c = place_before(x) it is N(c) + N_s(c) (s - c_s) + N_t(c) (t - c_t).
+/// fold there. With c = place_before(x) and w = way_beyond(x, c) it is N(c) + N_s(c) w_s + N_t(c) w_t.
 template <class T>
 detail::Basis<T> smooth_basis(const Patch<3>& patch, const Vec<double, 2>& at) {
   if (!is_beyond_edges(patch, at))
     return detail::gregory_basis<T>(patch.corners, seeded<T>(at[0], 0), seeded<T>(at[1], 1));
   using U = Dual<2, T>;
   const Vec<U, 2> place(seeded<U>(at[0], 0), seeded<U>(at[1], 1)), before = place_before<U>(patch, place);
-  const U way_s = place[0] - before[0], way_t = place[1] - before[1];
+  const Vec<U, 2> way = way_beyond<U>(patch, place, before);
   const auto edge = detail::gregory_basis<U>(patch.corners, before[0], before[1]);
   detail::Basis<T> basis;
   for (std::size_t k = 0; k < basis.value.size(); ++k) {
-    const U beyond = edge.value[k] + way_s * edge.along_s[k] + way_t * edge.along_t[k];
+    const U beyond = edge.value[k] + way[0] * edge.along_s[k] + way[1] * edge.along_t[k];
     basis.value[k] = beyond.v;
     basis.along_s[k] = beyond.d[0];
     basis.along_t[k] = beyond.d[1];

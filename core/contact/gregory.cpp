@@ -9,7 +9,10 @@
 ///
 ///   (c_b b_0 + (D - 2 c_a - c_b) b_1 + 2 c_a b_2 + r_a) / D,   c = cos theta, D = 3; in a triangle D = 4
 ///
-/// The two faces at an edge use r and -r, so their normals agree there. Sources:
+/// The two faces at an edge use r and -r, so their normals agree there.
+///
+/// Beyond its border the surface goes on straight from a node along -t_2, and from a corner along -(t_1 + t_2) / sqrt 2
+/// (WayBeyond); from a corner of one face it does along both edges. Sources:
 ///   Gregory, Smooth interpolation without twist constraints, in: Computer Aided Geometric Design (1974)
 ///   Loop, Schaefer, Ni, Castano, Approximating subdivision surfaces with Gregory patches, ACM TOG 28 (2009) 151
 ///   Halstead, Kass, DeRose, Efficient, fair interpolation using Catmull-Clark surfaces, SIGGRAPH (1993) 35: limits
@@ -62,6 +65,7 @@ struct Fan {
   Combination point;                             ///< p
   std::vector<Combination> edge;                 ///< e_k
   double cosine = 0;                             ///< of theta
+  WayBeyond beyond;                              ///< of the face behind the first spoke
   std::vector<Combination> across;               ///< r of the tangents alone, per spoke
   std::vector<std::optional<Combination>> ring;  ///< r of all nodes around; none: r runs from tangents to tangents
 
@@ -88,8 +92,15 @@ class ControlPoints {
           place[fan->faces[k]][corner] = k;
         }
       }
-    for (std::size_t f = 0; f < patches_.size(); ++f)
-      keep(points_of(patches_[f].corners, fans[f], place[f]), patches_[f]);
+    for (std::size_t f = 0; f < patches_.size(); ++f) {
+      Patch<3>& patch = patches_[f];
+      keep(points_of(patch.corners, fans[f], place[f]), patch);
+      for (int k = 0; k < patch.corners; ++k)
+        if (!patch.goes_on(k)) {
+          const WayBeyond &at = fans[f][k]->beyond, &end = fans[f][(k + 1) % patch.corners]->beyond;
+          patch.beyond[k] = {at, {-end.along, end.across}};
+        }
+    }
   }
 
  private:
@@ -186,6 +197,11 @@ class ControlPoints {
     }
     for (int k = 0; k < n; ++k) fan.edge.push_back(fan.point + turned(k));
     fan.cosine = std::cos(theta);
+    // t_2 and (t_1 + t_2) / sqrt 2 of the derivatives along the first spoke, t_1, and across it, cos t_1 + sin t_2
+    const double sine = std::sin(theta), half = std::sqrt(0.5) / sine;
+    if (!fan.is_closed && K > 1)
+      fan.beyond =
+          is_corner_[a] ? WayBeyond{half * (sine - fan.cosine), half} : WayBeyond{-fan.cosine / sine, 1 / sine};
     set_across(x, d, fan);
   }
 

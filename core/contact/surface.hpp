@@ -65,6 +65,12 @@ struct Patch<2> {
   bool is_smooth() const { return smoothing != Smoothing::none; }
 };
 
+/// How a patch goes on straight beyond an end of the surface: against `along` times its derivative along the edge plus
+/// `across` times that across it. At a node of the border all patches there go on along one line.
+struct WayBeyond {
+  double along = 0, across = 1;
+};
+
 template <>
 struct Patch<3> {
   int corners = 0;            ///< 3 or 4; edge k is from corner k to the next
@@ -73,9 +79,10 @@ struct Patch<3> {
   /// its corners.
   Eigen::MatrixXd control = {};
   std::array<int, 4> across{{no_patch, no_patch, no_patch, no_patch}};
-  std::array<int, 4> across_edge{};  ///< per edge: its number on the patch behind it
-  std::array<char, 4> smooth_at{};   ///< per edge: goes_on()
-  std::array<double, 4> widths{};    ///< per edge: width_behind() it at the start
+  std::array<int, 4> across_edge{};                  ///< per edge: its number on the patch behind it
+  std::array<char, 4> smooth_at{};                   ///< per edge: goes_on()
+  std::array<double, 4> widths{};                    ///< per edge: width_behind() it at the start
+  std::array<std::array<WayBeyond, 2>, 4> beyond{};  ///< per edge, at its beginning and its end
   int corner(int k) const { return vertices[k]; }
   bool goes_on(int edge) const { return smooth_at[edge] != 0; }
   bool goes_on_around() const { return std::count(smooth_at.begin(), smooth_at.end(), 1) == corners; }

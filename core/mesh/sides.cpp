@@ -50,19 +50,6 @@ Side side_named(const Mesh& mesh, const std::string& name) {
   return found == mesh.sides.end() ? boundary_of(mesh) : found->second;
 }
 
-/// The expression without a body; every term may or may not name one.
-SideExpression without_body(const Mesh& mesh, const std::string& text) {
-  auto bare = [&](const std::string& term) {
-    const auto dot = term.find('.');
-    return has_side(mesh, term) || dot == std::string::npos ? term : trimmed(term.substr(dot + 1));
-  };
-  const auto terms = split(text);
-  SideExpression expression{"", bare(terms.front().second), {}, ""};
-  for (std::size_t i = 1; i < terms.size(); ++i)
-    expression.operations.push_back({terms[i].first, bare(terms[i].second)});
-  return expression;
-}
-
 std::string unknown_side(const Mesh& mesh, const std::string& name) {
   if (has_side(mesh, name)) return "";
   std::vector<std::string> names;
@@ -198,7 +185,10 @@ Side evaluate_side(const Mesh& mesh, const SideExpression& expression) {
 }
 
 Side evaluate_side(const Mesh& mesh, const std::string& expression) {
-  return evaluate_side(mesh, without_body(mesh, expression));
+  const auto terms = split(expression);
+  SideExpression without_body{"", terms.front().second, {}, ""};
+  without_body.operations.assign(terms.begin() + 1, terms.end());
+  return evaluate_side(mesh, without_body);
 }
 
 std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates) {

@@ -36,7 +36,7 @@ std::string side_error(const Mesh&, const SideExpression&);
 /// Throws std::invalid_argument with side_error.
 Side evaluate_side(const Mesh&, const SideExpression&);
 
-/// The same of a text; in it a side may also stand without a body's name: "left".
+/// The same of a text whose sides stand without a body's name: "left & bottom".
 Side evaluate_side(const Mesh&, const std::string& expression);
 
 /// A side of an element: the element, and the nodes in the order of sides_of().

@@ -9,6 +9,9 @@
 
 namespace stickslip {
 
+/// Whose mesh it is: the nodes of a body have displacements, those of an obstacle have places alone.
+enum class MeshOf { body, obstacle };
+
 /// The mesh of a description; none, reported, where the description is at fault, where there is no memory for it beside
 /// those before it, or where an element is inverted or thin.
 ///
@@ -16,6 +19,6 @@ namespace stickslip {
 ///   node     the mesh
 ///   element  as in core/mesh/generators.hpp
 std::optional<Mesh> made_mesh(const JsonNode& owner, const JsonNode& node, const MeshDescription& description,
-                              const std::string& element, SceneReading& reading);
+                              const std::string& element, MeshOf whose, SceneReading& reading);
 
 }  // namespace stickslip

@@ -135,9 +135,7 @@ std::optional<RigidSurface> read_mesh_side(const JsonNode& node, SceneReading& r
                      ", which fills no region; a rigid side needs a solid behind it");
     return std::nullopt;
   }
-  const double nodes = reading.nodes;  // those of a rigid mesh have no displacements
-  auto mesh = made_mesh(node, *mesh_node, *description, "", reading);
-  reading.nodes = nodes;
+  auto mesh = made_mesh(node, *mesh_node, *description, "", MeshOf::obstacle, reading);
   if (!mesh) return std::nullopt;
   return side_of(*description, *mesh, *side);
 }

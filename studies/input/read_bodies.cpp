@@ -63,7 +63,7 @@ void read_body(const std::string& name, const JsonNode& node, SceneReading& read
   const auto material = material_node ? read_material(*material_node, mesh ? &*mesh : nullptr, reading) : std::nullopt;
   if (mesh) read_section(node, *mesh, body, reading);
   if (mesh)
-    if (auto made = made_mesh(node, *mesh_node, *mesh, body.element, reading)) {
+    if (auto made = made_mesh(node, *mesh_node, *mesh, body.element, MeshOf::body, reading)) {
       reading.meshes.emplace(name, *std::move(made));
       reading.described.emplace(name, *mesh);
     }

@@ -38,6 +38,7 @@ struct SceneReading {
   std::map<int, int> equal;                      ///< slots of two numbers that must change together
   std::vector<std::string> body_names, obstacle_names, contact_names;  ///< valid or not: all that the file has
   double nodes = 0;                                  ///< of all bodies so far, as estimated before they are made
+  double rigid_nodes = 0;                            ///< of meshes of obstacles, likewise
   std::map<std::string, Mesh> meshes;                ///< by body; none where the body's mesh is at fault
   std::map<std::string, MeshDescription> described;  ///< of each of these what it is made from
 

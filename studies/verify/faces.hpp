@@ -68,7 +68,7 @@ class Faces {
     const Near& best = near[0];
     const auto& [p, s, t] = best.place;
     Foot foot{true, best.y, best.normal, best.gap, best.place};
-    const Eigen::VectorXd N = patches_[p].weigh * blend(patches_[p].sides(), Vec2(s, t)).col(0);
+    const Eigen::VectorXd N = patches_[p].weigh * blend(patches_[p], Vec2(s, t)).col(0);
     for (Eigen::Index k = 0; k < N.size(); ++k) foot.weights.emplace_back(patches_[p].nodes[k], -N[k]);
     if (finite_) {
       foot.gap += rounding_off(best, seeker);
@@ -91,7 +91,7 @@ class Faces {
 
   /// y, y_s, y_t.
   Mat3 jet(int p, const Vec2& at) const {
-    Mat3 y = (nets_[p].colwise() - nets_[p].col(0)) * blend(patches_[p].sides(), at);
+    Mat3 y = (nets_[p].colwise() - nets_[p].col(0)) * blend(patches_[p], at);
     y.col(0) += nets_[p].col(0);
     return y;
   }

@@ -9,6 +9,8 @@
 ///                 pi / 2K of a corner, K the faces at the node
 ///   inside:       D f = c' p + (D - 2c - c') e + 2c e' + r,  D = 3, of triangles 4;  c = cos theta, ' of the edge's
 ///                 other end, r half of the cross derivative: both sides of an edge have it with opposite signs (G1)
+///   beyond:       straight along -t2 of a node of a border, along -(t1 + t2) of a corner of several faces; of a corner
+///                 of one face along its two edges; between the ends of an edge the shares of this way are linear
 ///
 /// Masks p, t1, t2: Catmull-Rom's, or limits of Catmull and Clark's B-splines by Halstead, Kass and DeRose; r: Loop,
 /// Schaefer, Ni, Castano, Approximating subdivision surfaces with Gregory patches (2009).
@@ -26,6 +28,8 @@ struct FacePatch {
   Eigen::MatrixXd weigh;  ///< W by node and c
   static constexpr int none = -1, smooth = -2;
   std::vector<int> beyond;  ///< per edge: the face behind a crease; none: a border; smooth: the surface goes on
+  /// Per edge, at both ends: how the patch goes on beyond it, as shares of its derivatives along the edge and across.
+  std::vector<std::array<Vec2, 2>> ways = {};
   int sides() const { return static_cast<int>(face.size()); }
 };
 
@@ -87,8 +91,10 @@ inline Eigen::MatrixX3cd blend_inside(const Eigen::VectorXcd& off) {
 
 /// B_c. Beyond its edges a patch goes on straight from the nearest place of a quadrilateral in (s, t). In a triangle it
 /// does so from the place on the line to the corner across from the edge, or from the corner if it is beyond two.
-inline Eigen::VectorXcd blend(int sides, Complex s, Complex t) {
-  Eigen::VectorXcd off = from_edges(sides, s, t);  // (not anew from where it begins: a rounding has either sign)
+inline Eigen::VectorXcd blend(const FacePatch& patch, Complex s, Complex t) {
+  const int sides = patch.sides();
+  const Eigen::VectorXcd whole = from_edges(sides, s, t);
+  Eigen::VectorXcd off = whole;  // (not anew from where it begins: a rounding has either sign)
   for (auto& from : off)
     if (from.real() < 0) from = 0;
   if (sides == 3)
@@ -96,15 +102,26 @@ inline Eigen::VectorXcd blend(int sides, Complex s, Complex t) {
   else
     for (int j = 0; j < 4; ++j)
       if (off[(j + 2) % 4] == 0.0) off[j] = 1;
+  Eigen::Vector2cd go(s - off[sides - 1], t - off[0]);
+  for (int j = 0; j < sides; ++j) {
+    if (whole[j].real() >= 0 || patch.beyond[j] == FacePatch::smooth) continue;
+    const Vec2 along = edge_along(sides, j), back = edge_along(sides, j + sides - 1), on = edge_along(sides, j + 1);
+    // Shares of both ends; of a triangle beside the edge its inside is towards the third corner.
+    const Complex end = off[(j + sides - 1) % sides], start = 1.0 - end;
+    const Eigen::Vector2cd inside = -back * start + on * end;
+    const Complex by_along = patch.ways[j][0][0] * start + patch.ways[j][1][0] * end,
+                  by_inside = patch.ways[j][0][1] * start + patch.ways[j][1][1] * end;
+    go += whole[j] * (along * by_along + inside * (by_inside - 1.0));
+  }
   const Eigen::MatrixX3cd B = blend_inside(off);
-  return B.col(0) + (s - off[sides - 1]) * B.col(1) + (t - off[0]) * B.col(2);
+  return B.col(0) + go[0] * B.col(1) + go[1] * B.col(2);
 }
 
 /// B_c and their derivatives by s and t: by steps along the imaginary axis, of which the square is nothing.
-inline Eigen::MatrixX3d blend(int sides, const Vec2& at) {
+inline Eigen::MatrixX3d blend(const FacePatch& patch, const Vec2& at) {
   constexpr double h = 1e-60;
-  const Eigen::VectorXcd by_s = blend(sides, {at[0], h}, at[1]), by_t = blend(sides, at[0], {at[1], h});
-  Eigen::MatrixX3d B(5 * sides, 3);
+  const Eigen::VectorXcd by_s = blend(patch, {at[0], h}, at[1]), by_t = blend(patch, at[0], {at[1], h});
+  Eigen::MatrixX3d B(5 * patch.sides(), 3);
   B << by_s.real(), by_s.imag() / h, by_t.imag() / h;
   return B;
 }
@@ -176,6 +193,7 @@ class Patchwork {
     Mask p;
     std::array<Mask, 2> spoke, twist;
     double cosine;
+    std::array<Vec2, 2> way;  ///< FacePatch::ways of the edge after the corner and of that before, if they are ends
   };
 
   Vertex vertex(const Corner& here, const std::map<int, int>& number) const {
@@ -198,7 +216,12 @@ class Patchwork {
     const bool is_corner = corners_.contains(node(here[0], here[1]));
     const double theta = std::numbers::pi * (closed ? 2 : is_corner ? 0.5 : 1) / K, C = std::cos(theta);
     const auto turn = [&](int k) { return Vec2(std::cos(k * theta), std::sin(k * theta)); };
-    Vertex vertex{v, {}, {}, C};
+    Vertex vertex{v, {}, {}, C, {Vec2(0, 1), Vec2(0, 1)}};
+    if (!closed && K > 1) {  // beyond a border the faces at a node go on along one line: that of t2, or the bisector
+      const Vec2 line = is_corner ? Vec2(1, 1).normalized() : Vec2(0, 1);
+      vertex.way = {Eigen::Matrix2d{{1, C}, {0, std::sin(theta)}}.inverse() * line,
+                    (Eigen::Matrix2d() << -turn(K), turn(K - 1)).finished().inverse() * line};
+    }
     Eigen::MatrixX2d T = Eigen::MatrixX2d::Zero(v.size(), 2);  // t1, t2
     if (is_corner) {
       T << x[0] - v, x[K] - v;
@@ -239,7 +262,7 @@ class Patchwork {
       for (const int face : faces_at_.at(near))
         for (const int n : faces_[face]) number.emplace(n, std::ssize(number));
     const int m = sides(f);
-    FacePatch patch{faces_[f], Nodes(number.size()), Eigen::MatrixXd(number.size(), 5 * m), {}};
+    FacePatch patch{faces_[f], Nodes(number.size()), Eigen::MatrixXd(number.size(), 5 * m), {}, {}};
     for (const auto& [n, k] : number) patch.nodes[k] = n;
     std::vector<Vertex> vertices;
     for (int j = 0; j < m; ++j) {
@@ -251,7 +274,8 @@ class Patchwork {
                                                   : FacePatch::smooth);
     }
     for (int j = 0; j < m; ++j) {
-      const auto& [p, spoke, twist, c] = vertices[j];
+      const auto& [p, spoke, twist, c, way] = vertices[j];
+      patch.ways.push_back({way[0], vertices[(j + 1) % m].way[1]});
       patch.weigh.col(j) = p;
       for (const int side : {0, 1}) {
         const Vertex& other = vertices[(j + (side == 0 ? 1 : m - 1)) % m];

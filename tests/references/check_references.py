@@ -622,7 +622,7 @@ def finite_faults():
 FINITE = ("press_fit", "curves", "finite_uniform", "finite_balance", "vertex")
 LONG_FINITE = ("finite_thin", "finite_stored", "finite_derivatives")
 QUICK = ("stop", "uniform", "balance", "inequalities", "bar", "capstan", "enumeration", "few_derivatives", "slider",
-         "tractrix", "stored") + FINITE
+         "stored") + FINITE
 
 
 def run(parts, until_one_fails=False):

@@ -271,6 +271,9 @@ TEST_F(RigidTriangles, OfAMeshAreRefusedWithTheFaultOfTheMesh) {
   constexpr const char* ball = R"({"ball": {"center": [0, 0, -3], "radius": 3, "cells": [4, 1]}})";
   EXPECT_EQ(fault_of(ball, "surface"), "none");
   EXPECT_THAT(fault_of(ball, "surfase"), testing::HasSubstr("did you mean \"surface\""));
+  EXPECT_THAT(fault_of(ball, "tool.surface"), testing::HasSubstr("did you mean \"surface\""));
+  EXPECT_THAT(fault_of(R"({"box": {"min": [0, 0, 0], "max": [1, 1, 1], "cells": [780, 780, 780]}})", "top"),
+              testing::HasSubstr("need some 380 GB of memory"));  // (800 bytes a node, which has no displacements)
   EXPECT_THAT(fault_of(R"({"ball": {"center": [0, 0, -3], "radius": -3, "cells": [4, 1]}})", "surface"),
               testing::HasSubstr("must be a number > 0"));
   EXPECT_THAT(fault_of(R"({"box": {"min": [0, 0, 0], "max": [1, 1, 1], "cells": [1, 1, 1]}})", "left & bottom & back"),

@@ -153,7 +153,7 @@ TEST(SceneReader, MakesAContactOfEachPairOfBodies) {
   EXPECT_EQ(scene.contacts[0].master, "a.boundary");
   const auto mesh = make_mesh(scene.bodies[1].mesh, "", 2);
   EXPECT_EQ(evaluate_side(mesh, "boundary").facets.size(), 16u);
-  EXPECT_EQ(evaluate_side(mesh, "boundary - b.left").nodes.size(), 11u);
+  EXPECT_EQ(evaluate_side(mesh, "boundary - left").nodes.size(), 11u);
 }
 
 TEST(SceneReader, ReadsLumpedBodies) {

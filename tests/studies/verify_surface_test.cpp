@@ -1,6 +1,7 @@
 /// The surface of a master in space as `verify` makes it, and its search for feet, by properties that need no solver.
 #include <gmock/gmock.h>
 
+#include "core/contact/foot_in_space.hpp"
 #include "studies/verify/faces.hpp"
 #include "studies/verify/solids.hpp"
 #include "tests/support/largest.hpp"
@@ -77,7 +78,7 @@ void shake(Mesh& mesh) {
 
 /// y, y_s, y_t of nodes at x.
 Mat3 jet(const FacePatch& patch, const Field& x, const Vec2& at) {
-  return x(Eigen::all, patch.nodes) * patch.weigh * blend(patch.sides(), at);
+  return x(Eigen::all, patch.nodes) * patch.weigh * blend(patch, at);
 }
 Vec3 normal(const Mat3& y) { return y.col(1).cross(y.col(2)).normalized(); }
 
@@ -123,37 +124,64 @@ TEST(VerifySurface, HasWeightsOfSumOneAtEachValence) {
     for (const auto& patch : Patchwork(mesh.nodes, mesh.faces, smooth, 60).patches) {
       EXPECT_LE(largest_entry((patch.weigh.colwise().sum().array() - 1).matrix()), rounding);
       for (const Vec2& at : places)
-        EXPECT_LE((blend(patch.sides(), at).colwise().sum() - Eigen::RowVector3d(1, 0, 0)).norm(), rounding);
+        EXPECT_LE((blend(patch, at).colwise().sum() - Eigen::RowVector3d(1, 0, 0)).norm(), rounding);
     }
+}
+
+/// A triangle and a quadrilateral all around which the surface goes on.
+std::array<FacePatch, 2> inner_patches() {
+  const auto patch = [](int sides) {
+    return FacePatch{Nodes(sides), {}, {}, std::vector<int>(sides, FacePatch::smooth), {}};
+  };
+  return {patch(3), patch(4)};
 }
 
 TEST(VerifySurface, HasDerivativesThatAreThoseOfItsValues) {
   constexpr double h = 1e-5;  // errors of differences: h^2, and rounding over h
-  for (const int sides : {3, 4})
+  for (const auto& patch : inner_patches())
     for (const Vec2& at : {Vec2(0.2, 0.3), Vec2(0.6, 0.1), Vec2(0.05, 0.4)})
       for (int i = 0; i < 2; ++i) {
         const Vec2 step = h * Vec2::Unit(i);
-        const Eigen::VectorXd difference = (blend(sides, at + step) - blend(sides, at - step)).col(0) / (2 * h);
-        EXPECT_LE(largest_entry(difference - blend(sides, at).col(1 + i)), 1e-8);
+        const Eigen::VectorXd difference = (blend(patch, at + step) - blend(patch, at - step)).col(0) / (2 * h);
+        EXPECT_LE(largest_entry(difference - blend(patch, at).col(1 + i)), 1e-8);
       }
 }
 
 // At a corner, and past it along an edge, distances to edges are zero but for rounding. (Beyond two edges slopes are
 // others.)
 TEST(VerifySurface, HasTheSlopesOfItsCornersBesideThemToo) {
-  for (const int sides : {3, 4})
-    for (const double past : {0.0, 1e-3, 0.068})
-      for (const double off : {-1e-16, -5.7e-18, 5.7e-18, 1e-16}) {
-        if (past > 0 && off < 0) continue;
-        for (int j = 0; j < sides; ++j)
-          for (const bool along_this : {false, true}) {
-            const Vec2 along = along_this ? edge_along(sides, j) : Vec2(-edge_along(sides, (j + sides - 1) % sides)),
-                       across = along_this ? Vec2(-edge_along(sides, (j + sides - 1) % sides)) : edge_along(sides, j),
-                       at = corner_at(sides, j) - past * along;
-            const Eigen::MatrixX3d exact = blend(sides, at);
-            EXPECT_LE(largest_entry(blend(sides, at + off * across) - exact), rounding) << sides << past << off << j;
+  for (const auto& patch : inner_patches())
+    for (int j = 0; j < patch.sides(); ++j) {
+      const Vec2 next = edge_along(patch.sides(), j), back = -edge_along(patch.sides(), j + patch.sides() - 1);
+      for (const auto& [along, across] : {std::pair(next, back), std::pair(back, next)})
+        for (const double past : {0.0, 1e-3, 0.068})
+          for (const double off : {-1e-16, -5.7e-18, 5.7e-18, 1e-16}) {
+            if (past > 0 && off < 0) continue;
+            const Vec2 at = corner_at(patch.sides(), j) - past * along;
+            EXPECT_LE(largest_entry(blend(patch, at + off * across) - blend(patch, at)), rounding)
+                << patch.sides() << " sides, corner " << j << ": " << past << ", " << off;
           }
-      }
+    }
+}
+
+/// The judge shares no formula with the program, and has the same surfaces, beyond their edges too.
+TEST(VerifySurface, IsThatOfTheProgram) {
+  for (Mesh mesh : {ball(4, 1), grid(5, true, 0.1)}) {
+    shake(mesh);
+    for (const int smooth : {1, 2}) {
+      const auto kind = smooth == 1 ? Smoothing::catmull_rom : Smoothing::b_spline;
+      const auto theirs = make_surface<3>(mesh.faces, kind, 60, mesh.nodes);
+      const auto patches = Patchwork(mesh.nodes, mesh.faces, smooth, 60).patches;
+      for (std::size_t p = 0; p < patches.size(); ++p)
+        for (const double s : {-0.4, -0.01, 0.3, 0.8, 1.37})
+          for (const double t : {-0.3, -0.02, 0.1, 0.6, 1.2}) {
+            const auto weights = place_weights(theirs[p], {s, t}).leftCols<3>().eval();
+            const Mat3 place = mesh.nodes(Eigen::all, theirs[p].vertices) * weights;
+            EXPECT_LE(largest_entry(place - jet(patches[p], mesh.nodes, {s, t})), 1e-13)  // rounding, times some ten
+                << "patch " << p << " at " << s << ", " << t;
+          }
+    }
+  }
 }
 
 /// Normals agree whatever nodes do after weights are made.
@@ -239,7 +267,7 @@ TEST(VerifySurface, KeepsCreases) {
         const auto on_edge = [](const Vec3& x) { return (x.cwiseAbs().array() > 1 - rounding).count() >= 2; };
         if (!on_edge(from) || !on_edge((from + to) / 2)) continue;
         const Eigen::VectorXd N =
-            patch.weigh * blend(patch.sides(), corner_at(patch.sides(), j) + 0.3 * edge_along(patch.sides(), j)).col(0);
+            patch.weigh * blend(patch, corner_at(patch.sides(), j) + 0.3 * edge_along(patch.sides(), j)).col(0);
         for (Eigen::Index k = 0; k < N.size(); ++k)
           EXPECT_TRUE(on_edge(mesh.nodes.col(patch.nodes[k])) || std::abs(N[k]) <= rounding);
       }

@@ -79,8 +79,8 @@ TEST(Surface, WeightsSumToOneAndKeepAffineMaps) {
       }
 }
 
-/// Beyond its edges a patch goes on with the slopes that it has there, on straight lines across them. So it is smooth
-/// there, and folds nowhere.
+/// Beyond its edges a patch goes on in its tangent planes there, on straight lines across them. So it is smooth there,
+/// and folds nowhere.
 TEST(Surface, GoesOnStraightBeyondItsEdges) {
   const Net net = crumpled();
   constexpr double h = 1e-5;
@@ -106,7 +106,9 @@ TEST(Surface, GoesOnStraightBeyondItsEdges) {
             on_edge - face_corner(patch.corners, edge + 2);  // of a triangle the straight line
         const Vec<double, 2> out = patch.corners == 3 ? across : Vec<double, 2>((to - from)[1], -(to - from)[0]);
         const auto weights = [&](double share) -> PlaceWeights { return place_weights(patch, on_edge + share * out); };
-        EXPECT_LE(largest_entry((weights(1e-9) - weights(-1e-9)).leftCols<3>()), 1e-7) << edge;  // 2e-9 times some 10
+        const auto beside = [&](double share) { return at(patch, net.points, on_edge + share * out); };
+        EXPECT_LE((beside(1e-9).y - beside(-1e-9).y).norm(), 1e-7) << edge;  // 2e-9 times some 10
+        EXPECT_LE((beside(1e-9).normal - beside(-1e-9).normal).norm(), 1e-7) << edge;
         const Eigen::VectorXd bend = weights(0.5).col(0) - 2 * weights(0.3).col(0) + weights(0.1).col(0);
         EXPECT_LE(largest_entry(bend), 1e-13) << edge;  // rounding
         const Vec<double, 2> inside = on_edge - 0.004 * out, outside = on_edge + 0.005 * out;
@@ -114,6 +116,40 @@ TEST(Surface, GoesOnStraightBeyondItsEdges) {
         EXPECT_LE(largest_entry(weights_moved(patch, inside, outside) - moved), 1e-14);  // rounding
       }
     }
+}
+
+/// Beyond a node of the border two patches go on along one line, and leave no room between them.
+TEST(Surface, GoesOnAlongOneLineBeyondANodeOfItsBorder) {
+  const Net net = crumpled();
+  std::set<int> counts;  // of faces at such a node
+  for (const Smoothing kind : smooth_kinds) {
+    const auto patches = make_surface<3>(net.faces, kind, no_creases, net.points);
+    const auto is_end = [&](int p, int edge) { return patches[p].across[edge] == no_patch; };
+    // The place beyond edge `edge` of patch p on the line from its beginning or its end.
+    const auto beyond = [&](int p, int edge, bool from_end, double by) -> Vec<double, 3> {
+      const Patch<3>& patch = patches[p];
+      const int corner = from_end ? edge + 1 : edge, across = from_end ? corner + 1 : corner + patch.corners - 1;
+      const Vec<double, 2> here = face_corner(patch.corners, corner),
+                           way = here - Vec<double, 2>(face_corner(patch.corners, across));
+      return at(patch, net.points, here + by * way).y;
+    };
+    for (int p = 0; p < static_cast<int>(patches.size()); ++p)
+      for (int edge = 0; edge < patches[p].corners; ++edge) {
+        if (!is_end(p, edge)) continue;
+        int other = p, before = (edge + patches[p].corners - 1) % patches[p].corners, faces = 1;
+        for (; !is_end(other, before); ++faces) {  // around the node, to the end that comes before
+          const int next = patches[other].across[before];
+          before = (patches[other].across_edge[before] + patches[next].corners - 1) % patches[next].corners;
+          other = next;
+        }
+        counts.insert(faces);
+        if (faces == 1) continue;  // it goes on along both edges
+        for (const double by : {0.1, 0.5})
+          EXPECT_LE((beyond(p, edge, false, by) - beyond(other, before, true, by)).norm(), 1e-14)
+              << p << " " << other << ": " << faces << " faces";  // rounding
+      }
+  }
+  EXPECT_TRUE(counts.count(2) && counts.count(3) && counts.count(4)) << "nodes of 2 to 4 faces";
 }
 
 TEST(Surface, NormalsAgreeAcrossEdgesWhereverTheNodesAre) {

@@ -24,17 +24,17 @@ using Facets = std::vector<std::vector<int>>;
 TEST(Sides, RunCounterClockwiseWithTheirFacetsInOrder) {
   EXPECT_EQ(evaluate_side(block(), "bottom").nodes, (Nodes{0, 1, 2, 3}));
   EXPECT_EQ(evaluate_side(block(), "top").nodes, (Nodes{11, 10, 9, 8}));
-  EXPECT_EQ(evaluate_side(block(), "block.left").facets, (Facets{{8, 4}, {4, 0}}));
+  EXPECT_EQ(evaluate_side(block(), "left").facets, (Facets{{8, 4}, {4, 0}}));
 }
 
 TEST(Sides, IntersectAtACornerWithoutFacets) {
-  const Side corner = evaluate_side(block(), "block.left & block.bottom");
+  const Side corner = evaluate_side(block(), parse_side_expression("block.left & block.bottom"));
   EXPECT_EQ(corner.nodes, Nodes{0});
   EXPECT_TRUE(corner.facets.empty());
 }
 
 TEST(Sides, LeaveNodesOutButKeepTheFacetsOfTheNodesThatAreLeft) {
-  const Side side = evaluate_side(block(), "block.bottom - block.right");
+  const Side side = evaluate_side(block(), parse_side_expression("block.bottom - block.right"));
   EXPECT_EQ(side.nodes, (Nodes{0, 1, 2}));
   EXPECT_EQ(side.facets, (Facets{{0, 1}, {1, 2}, {2, 3}}));
   const Side inner = evaluate_side(block(), "right - top - bottom");
