@@ -129,8 +129,7 @@ void expect_derivatives(const Filled& filled, const std::function<Material(Scene
   const Pairs pairs(model, count);
   const Work work{model, pairs};
   const auto found = pulled_back(model, points, pairs);
-  // Some thousand operations meet in a sum; a flow divides by differences that are a hundredth of their terms.
-  const double rounding = model.memory_count > 0 ? 1e-12 : 1e-13;
+  constexpr double rounding = 1e-13;  // some thousand operations meet in a sum; measured 5e-15
   const auto expect = [&](const Matrix<double>& derivative, const Matrix<double>& expected) {
     EXPECT_GT(largest_entry(expected), 0);
     EXPECT_LE(derivatives::relative_difference(derivative, expected), rounding) << filled.element;
