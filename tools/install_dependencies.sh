@@ -10,8 +10,8 @@ packages=(g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libopenblas0-se
   libmumps-headers-dev nlohmann-json3-dev libcli11-dev libfmt-dev help2man)
 case "${1:-}" in
   "") ;;
-  test) packages+=(libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev python3-jsonschema dpkg-dev file
-    librsvg2-bin fonts-liberation poppler-utils chromium python3-numpy python3-scipy pybind11-dev python3-dev
+  test) packages+=(clang libgtest-dev libgmock-dev libbenchmark-dev librapidcheck-dev python3-jsonschema dpkg-dev
+    file librsvg2-bin fonts-liberation poppler-utils chromium python3-numpy python3-scipy pybind11-dev python3-dev
     python3-nlopt) ;;
   python) packages+=(pybind11-dev python3-dev python3-pip python3-setuptools python3-wheel python3-venv python3-numpy
     python3-pandas python3-matplotlib python3-nlopt jupyter-nbconvert python3-ipykernel) ;;
